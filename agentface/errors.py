@@ -1,0 +1,90 @@
+"""Everything agentface raises on purpose: one tree, rooted in :class:`AgentFaceError`.
+
+Every message says where the fault is, what was expected, what came, and what to do next.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass
+from difflib import get_close_matches
+from pathlib import Path
+
+
+class AgentFaceError(Exception):
+    """The root of all errors that agentface raises on purpose."""
+
+
+@dataclass(frozen=True, slots=True)
+class Fault:
+    """One thing wrong with one data file.
+
+    ``line`` counts from 1; it is None where a fault has no line (a binary file, a missing file).
+    ``where`` is the path inside the document, for example ``muscles.risorius.zone_deg``.
+    """
+
+    file: Path
+    line: int | None
+    where: str
+    expected: str
+    got: str
+    hint: str = ""
+
+    def __str__(self) -> str:
+        place = f"{self.file}:{self.line}" if self.line is not None else str(self.file)
+        where = f"{self.where}: " if self.where else ""
+        hint = f" ({self.hint})" if self.hint else ""
+        return f"{place}: {where}expected {self.expected}, got {self.got}{hint}"
+
+    def as_dict(self) -> dict[str, object]:
+        """The fault as JSON-ready values."""
+        return {**asdict(self), "file": str(self.file)}
+
+
+class DataError(AgentFaceError):
+    """One or more faults in data files (YAML, meshes); ``faults`` holds all of them."""
+
+    def __init__(self, faults: Sequence[Fault]) -> None:
+        self.faults = tuple(faults)
+        super().__init__("\n".join(str(fault) for fault in self.faults))
+
+
+class UnknownNameError(AgentFaceError, KeyError):
+    """A name that the registry, the rules or the face does not have."""
+
+    def __init__(self, kind: str, got: object, known: Sequence[str]) -> None:
+        self.kind, self.got, self.known = kind, got, tuple(known)
+        self.hint = did_you_mean(got, known)
+        super().__init__(f"expected the name of one {kind}, got {got!r}; {self.hint}")
+
+    def __str__(self) -> str:  # KeyError would print the repr
+        return str(self.args[0])
+
+
+class InvalidValueError(AgentFaceError, ValueError):
+    """A value of the wrong type, shape or range."""
+
+    def __init__(self, where: str, expected: str, got: object, hint: str = "") -> None:
+        self.where, self.expected, self.got, self.hint = where, expected, got, hint
+        tail = f"; {hint}" if hint else ""
+        super().__init__(f"{where}: expected {expected}, got {got!r}{tail}")
+
+
+class GraphicsError(AgentFaceError):
+    """No picture can be made: no OpenGL on the machine, no display, or a shader that does not compile."""
+
+
+class OutputError(AgentFaceError):
+    """A file that cannot be written."""
+
+
+class ServerError(AgentFaceError):
+    """A server that cannot start, for example because its port is taken."""
+
+
+def did_you_mean(got: object, known: Sequence[str]) -> str:
+    """A hint that names the nearest known names, or all of them when none is near."""
+    near = get_close_matches(str(got), known, n=3)
+    if near:
+        return f"did you mean {' or '.join(near)}?"
+    return f"known: {', '.join(known)}"
