@@ -1,0 +1,115 @@
+"""``python -m agentface.anatomy.build [FACE]...``: write ``regions/<face>/`` from its ``recipe.yaml``."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+import numpy as np
+import yaml
+
+from agentface.anatomy.build.head import METRES, Head, HeadTopology, build_head
+from agentface.anatomy.build.head import _hinge as hinge_of
+from agentface.anatomy.build.identity import Recipe, person
+from agentface.anatomy.build.partition import halves
+from agentface.anatomy.build.source import WHEEL, BaseMesh, fetch
+from agentface.anatomy.glb import write_glb
+from agentface.config import load
+from agentface.resources import cache_folder, data_folder
+
+_CREDIT = "CC0 1.0: MakeHuman base mesh hm08 and targets, Face Units by Mika Suominen; changed for agentface"
+
+
+@click.command()
+@click.argument("faces", nargs=-1)
+@click.option("--source", type=click.Path(path_type=Path), help="Where the base mesh is, or goes.")
+def main(faces: tuple[str, ...], source: Path | None) -> None:
+    """Build FACES (all that have a recipe, if none is named) from the CC0 base mesh."""
+    mesh = BaseMesh(fetch(source or cache_folder() / "source"))
+    topology = HeadTopology(mesh)
+    folders = [data_folder("regions") / face for face in faces]
+    for folder in folders or sorted(path.parent for path in data_folder("regions").glob("*/recipe.yaml")):
+        recipe = load(folder / "recipe.yaml", Recipe)
+        head = build_head(topology, recipe)
+        write_glb(folder / "head.glb", head.meshes, _CREDIT)
+        _write_tables(folder, topology, head, recipe)
+        (folder / "PROVENANCE.md").write_text(_provenance(folder.name, recipe, topology), encoding="utf-8")
+        size = (folder / "head.glb").stat().st_size
+        click.echo(f"{folder.name}: {len(topology.skin.kept)} skin vertices, {len(topology.skin.triangles)} triangles, {size} bytes")
+
+
+def _write_tables(folder: Path, topology: HeadTopology, head: Head, recipe: Recipe) -> None:
+    positions = topology.mesh.positions
+    _dump(
+        folder / "regions.yaml",
+        "The first and the last vertex of each region (Bui et al., section 2.1) and sub-region.",
+        {"vertices": len(topology.skin.kept), "regions": topology.regions, "sub_regions": topology.sub_regions},
+    )
+    _dump(
+        folder / "feature_points.yaml",
+        "Named points of the face: the vertices whose mean each is, and its MPEG-4 feature point.",
+        {"landmarks": topology.landmarks},
+    )
+    lip_rings = [[topology.ring(half) for half in halves(ring, positions)] for ring in topology.loops.lips]
+    _dump(
+        folder / "lips.yaml",
+        "Rings of vertices round the mouth, from the seam outward; each half from the left corner to the right one.",
+        {"rings": [{"upper": upper, "lower": lower} for upper, lower in lip_rings]},
+    )
+    lids = {
+        side: [dict(zip(("upper", "lower"), map(topology.ring, halves(ring, positions)), strict=True)) for ring in rings]
+        for side, rings in topology.loops.lids.items()
+    }
+    _dump(
+        folder / "eyelids.yaml",
+        "Rings of vertices round each eye, from the lid's inner margin outward; each half from +x to -x.",
+        {"rings": lids},
+    )
+    centre = [round(float(value), 6) for value in head.eye_centre]
+    _dump(
+        folder / "eyes.yaml",
+        "The left eyeball in metres (the right one is its mirror image) and how far the eyes turn.",
+        {"centre": centre, "radius": round(head.eye_radius, 6), "yaw_limit_deg": 27.5, "pitch_limit_deg": 16.0},
+    )
+    pivot, angle = hinge_of(person(topology.mesh, recipe), topology.mesh, head.origin)
+    _dump(
+        folder / "jaw.yaml",
+        "The jaw's hinge in metres (its axis is parallel to X) and its widest opening.",
+        {"pivot": [round(float(METRES * value), 6) for value in pivot], "widest_deg": round(float(np.degrees(angle)), 2)},
+    )
+
+
+def _dump(path: Path, title: str, content: dict[str, object]) -> None:
+    text = yaml.dump(content, Dumper=_Dumper, sort_keys=False, width=118, default_flow_style=None)
+    path.write_text(f"# {title}\n# Written by `python -m agentface.anatomy.build`.\n{text}", encoding="utf-8")
+
+
+class _Dumper(yaml.SafeDumper):
+    def ignore_aliases(self, data: object) -> bool:
+        return True
+
+
+def _provenance(name: str, recipe: Recipe, topology: HeadTopology) -> str:
+    return f"""# Where the face {name} comes from
+
+{recipe.description}
+
+| what | source | licence |
+|---|---|---|
+| base mesh hm08, its targets, its symmetry | MakeHuman community, in the Python wheel `{WHEEL}`, folder `mpfb2` | CC0 1.0 |
+| the 52 ARKit-named shapes | Face Units by Mika Suominen, same wheel, folder `faceunits01` | CC0 1.0 |
+| single teeth, gums, eyeballs | made by `agentface.anatomy.build` | MIT |
+
+Nothing else of the wheel is read. Recipe: `recipe.yaml` beside this file. Made again, byte for byte, by
+
+    python -m agentface.anatomy.build {name}
+
+Steps: mix the targets of the recipe; make the head symmetric; move the lips together until they touch; subdivide
+forehead, glabella, crow's feet and cheeks (Catmull-Clark, up to twice); thin out ears, mouth bag, skull and neck; order
+the vertices by region. The skin has {len(topology.skin.kept)} vertices and {len(topology.skin.triangles)} triangles.
+The 52 shapes are made symmetric and kept as sparse morph targets.
+"""
+
+
+if __name__ == "__main__":
+    main()

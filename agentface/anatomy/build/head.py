@@ -1,0 +1,236 @@
+"""Puts a head together: the shared topology, then one person's arrays and tables on it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from agentface.anatomy.build import mouth_parts
+from agentface.anatomy.build.identity import Recipe, close_lips, person
+from agentface.anatomy.build.partition import Loops, base_labels, find_loops, order_by_region, partition, ranges
+from agentface.anatomy.build.source import BaseMesh
+from agentface.anatomy.build.thin import Thinner
+from agentface.anatomy.build.topology import Skin
+from agentface.anatomy.glb import MeshArrays, Shape
+from agentface.anatomy.regions import REGIONS, REST
+from agentface.conventions import Doubles, Indices
+
+_FACE, _BAG, _BODY, _SOCKETS = 0, 1, 2, {"r": 3, "l": 6}
+_NECK_BOTTOM = 5.6
+_THINNED = 560
+_SMALLEST_OFFSET = 5e-6
+METRES = 0.1
+
+# Landmarks that are vertices of the base mesh; left ones, whose mirror images are the right ones.
+_EXACT = {
+    "nasion": 132, "nose_tip": 5054, "subnasale": 343, "upper_lip_middle": 455, "lower_lip_middle": 492, "pogonion": 733,
+    "brow_inner_l": 6983, "brow_middle_l": 6996, "brow_outer_l": 6999, "inner_canthus_l": 6850, "outer_canthus_l": 6805,
+    "mouth_corner_l": 7272, "ear_front_l": 12324,
+}  # fmt: skip
+# The others, as the vertex nearest to a place on the base head, in decimetres.
+_NEAREST = {
+    "glabella": (0, 7.44, 1.50), "hairline_middle": (0, 7.98, 1.30), "chin_fold": (0, 6.45, 1.50), "menton": (0, 6.27, 1.42),
+    "infraorbital_l": (0.29, 7.08, 1.40), "cheekbone_l": (0.46, 7.05, 1.27), "zygion_l": (0.60, 7.12, 1.05),
+    "alare_l": (0.135, 6.87, 1.50), "upper_lip_side_l": (0.13, 6.705, 1.56), "lower_lip_side_l": (0.13, 6.53, 1.53),
+    "cheek_l": (0.42, 6.75, 1.30), "jaw_side_l": (0.35, 6.36, 1.25), "gonion_l": (0.58, 6.50, 0.85),
+}  # fmt: skip
+_FEATURE_POINTS = {
+    "hairline_middle": "11.1", "menton": "2.1", "pogonion": "2.10", "upper_lip_middle": "8.1", "lower_lip_middle": "8.2",
+    "mouth_corner_l": "8.3", "mouth_corner_r": "8.4", "subnasale": "9.15", "nose_tip": "9.3", "nasion": "9.12",
+    "lid_upper_l": "3.1", "lid_upper_r": "3.2", "lid_lower_l": "3.3", "lid_lower_r": "3.4", "outer_canthus_l": "3.7",
+    "outer_canthus_r": "3.12", "inner_canthus_l": "3.11", "inner_canthus_r": "3.8", "brow_inner_l": "4.1",
+    "brow_inner_r": "4.2", "brow_middle_l": "4.3", "brow_middle_r": "4.4", "brow_outer_l": "4.5", "brow_outer_r": "4.6",
+    "alare_l": "9.1", "alare_r": "9.2", "cheekbone_l": "5.3", "cheekbone_r": "5.4",
+}  # fmt: skip
+
+
+class HeadTopology:
+    """What all faces of the base mesh share: triangles, vertex order, regions, rings, landmarks."""
+
+    def __init__(self, mesh: BaseMesh) -> None:
+        self.mesh = mesh
+        quads, island = mesh.quads["body"], mesh.islands()
+        at = mesh.positions[quads]
+        neck = (island == _BODY) & (at[..., 1].min(1) > _NECK_BOTTOM) & (np.abs(at[..., 0]).max(1) < 0.9)
+        chosen = (island == _FACE) | (island == _BAG) | neck
+        self.quads = quads[chosen]
+        sockets = {side: quads[island == number] for side, number in _SOCKETS.items()}
+        self.loops: Loops = find_loops(quads[island == _FACE], quads[island == _BAG], sockets)
+        self.bag_vertices = np.setdiff1d(quads[island == _BAG], self.loops.lips[0])
+        self.skin = Skin(self.quads, _levels(mesh.positions[self.quads], island[chosen]), mesh.positions, mesh.mirror)
+        self._partition()
+        self._thin()
+        self._partition()
+        order = order_by_region(self.region, self.sub, self.points)
+        self.skin.reorder(order)
+        self.region, self.sub, self.points = self.region[order], self.sub[order], self.points[order]
+        self.regions, self.sub_regions = ranges(self.region, self.sub)
+
+    def _partition(self) -> None:
+        mesh, skin = self.mesh, self.skin
+        labels = {name: skin.place(field) for name, field in base_labels(mesh.positions, self.loops).items()}
+        self.points = skin.place(mesh.positions)
+        self.region, self.sub = partition(self.points, labels, skin.place(self._indicator(self.bag_vertices)))
+
+    def _thin(self) -> None:
+        """Drop vertices of the rest of the head: ears, mouth bag, skull and neck need few."""
+        skin, rest = self.skin, self.region == REGIONS.index(REST)
+        free = rest & (self.points[:, 0] > 1e-6)
+        free[np.unique(skin.triangles[~rest[skin.triangles].all(1)])] = False
+        free[[self._index_of(vertex) for vertex in _EXACT.values()]] = False
+        half = skin.triangles[: len(skin.triangles) // 2]
+        left = Thinner(self.points, half, free).run(_THINNED)
+        skin.keep(np.concatenate([left, skin.mirror[left[:, ::-1]]]))
+
+    def _indicator(self, vertices: Indices, values: float = 1.0) -> Doubles:
+        field = np.zeros((self.mesh.count, 1))
+        field[vertices] = values
+        return field
+
+    def _index_of(self, base_vertex: int) -> int:
+        (where,) = np.flatnonzero(self.skin.kept == base_vertex)
+        return int(where)
+
+    def ring(self, base_ring: list[int]) -> list[int]:
+        """A ring of base vertices as skin vertices."""
+        return [self._index_of(vertex) for vertex in base_ring]
+
+    @cached_property
+    def landmarks(self) -> dict[str, dict[str, object]]:
+        """The rows of ``feature_points.yaml``."""
+        found = {name: self._index_of(vertex) for name, vertex in _EXACT.items()}
+        for name, place in _NEAREST.items():
+            found[name] = int(np.linalg.norm(self.points - place, axis=1).argmin())
+        for name, ring_half in (("lid_upper_l", 0), ("lid_lower_l", 1)):
+            found[name] = self._lid_middle(ring_half)
+        for name in [name for name in found if name.endswith("_l")]:
+            found[f"{name[:-2]}_r"] = int(self.skin.mirror[found[name]])
+        return {
+            name: {"vertices": [found[name]], **({"feature_point": point} if (point := _FEATURE_POINTS.get(name)) else {})}
+            for name in sorted(found)
+        }
+
+    def _lid_middle(self, half: int) -> int:
+        from agentface.anatomy.build.partition import halves
+
+        ring = halves(self.loops.lids["l"][3], self.mesh.positions)[half]
+        middle = 0.5 * (self.mesh.positions[ring, 0].min() + self.mesh.positions[ring, 0].max())
+        return self._index_of(min(ring, key=lambda vertex: abs(self.mesh.positions[vertex, 0] - middle)))
+
+    @cached_property
+    def material(self) -> Doubles:
+        """``(V, 4)`` weights 0..1: lip, inside of the mouth, wet lid margin, ear."""
+        lip, mouth, wet = (np.zeros((self.mesh.count, 1)) for _ in range(3))
+        mouth[self.bag_vertices] = 1.0
+        for depth, ring in enumerate(self.loops.lips):
+            lip[ring] = 1.0 if depth <= 6 else (0.45 if depth == 7 else 0.0)
+        for depth, ring in enumerate(self.loops.mouth[:3]):
+            lip[ring] = 1.0 if depth < 2 else 0.6
+            mouth[ring] = 0.0
+        for rings_of_eye in self.loops.lids.values():
+            for depth, weight in enumerate((1.0, 1.0, 0.8, 0.25)):
+                wet[rings_of_eye[depth]] = weight
+        x, y, z = np.abs(self.points[:, :1]), self.points[:, 1:2], self.points[:, 2:]
+        ear = np.clip((x - 0.66) / 0.06, 0, 1) * (np.abs(y - 7.05) < 0.5) * (z > 0.1) * (z < 0.85)
+        return np.clip(np.hstack([*(self.skin.place(field) for field in (lip, mouth, wet)), ear]), 0, 1)
+
+
+def _levels(corners: Doubles, island: Indices) -> Indices:
+    """How often to subdivide quads with corners ``(Q, 4, 3)``: finest on the forehead, where furrows are narrow."""
+    middle = corners.mean(1)
+    x, y, z = np.abs(middle[:, 0]), middle[:, 1], middle[:, 2]
+    wanted = np.full(len(corners), np.float64(1e3))
+    wanted[(y > 6.3) & (y < 7.15) & (x > 0.12) & (x < 0.50) & (z > 1.0)] = 0.040
+    wanted[(y > 7.12) & (y < 7.40) & (x > 0.43) & (x < 0.64) & (z > 0.85)] = 0.030
+    wanted[(y > 7.18) & (y <= 7.46) & (x < 0.14) & (z > 1.2)] = 0.026
+    wanted[(y > 7.44) & (y < 7.92) & (z > 0.92) & (x < 0.58)] = 0.0195
+    wanted[island == _BAG] = 1e3
+    edge = np.linalg.norm(corners - np.roll(corners, 1, 1), axis=2).mean(1)
+    return np.clip(np.round(np.log2(edge / wanted)), 0, 2).astype(np.int32)
+
+
+@dataclass(frozen=True, slots=True)
+class Head:
+    """One person's head on the shared topology, in metres: meshes for ``head.glb`` and what the tables need."""
+
+    meshes: dict[str, MeshArrays]
+    eye_centre: Doubles
+    eye_radius: float
+    origin: Doubles
+
+
+def build_head(topology: HeadTopology, recipe: Recipe) -> Head:
+    """The head of the person that ``recipe`` describes."""
+    mesh, skin = topology.mesh, topology.skin
+    base = close_lips(person(mesh, recipe), skin, topology.loops, mesh.positions)
+    eye = base[np.unique(mesh.quads["helper-l-eye"])]
+    radius = 0.5 * (eye[:, 0].max() - eye[:, 0].min())
+    centre = np.array([0.5 * (eye[:, 0].max() + eye[:, 0].min()), 0.5 * (eye[:, 1].max() + eye[:, 1].min()), eye[:, 2].min() + radius])
+    ear = skin.place(base)[topology.landmarks["ear_front_l"]["vertices"]][0]  # type: ignore[index]
+    origin = np.array([0.0, centre[1], ear[2]])
+    shapes = {name: skin.place(mesh.face_unit(name)) for name in mesh.face_units()}
+    jaw = _jaw_weights(skin.place(base) - origin, shapes["jawOpen"], *_hinge(base, mesh, origin))
+    meshes = {
+        "skin": MeshArrays(
+            skin.triangles,
+            {
+                "POSITION": _metres(skin.place(base) - origin),
+                "_MATERIAL": _bytes(topology.material),
+                "_SHADE": _bytes(np.tile([1.0, 0, 0, 0], (len(skin.kept), 1))),
+                "_JAW": jaw.astype(np.float32),
+            },
+            {name: _sparse(offsets) for name, offsets in shapes.items()},
+        )
+    }
+    parts = {
+        "teeth_upper": mouth_parts.dental_arch(base[np.unique(mesh.quads["helper-upper-teeth"])], upper=True),
+        "teeth_lower": mouth_parts.dental_arch(base[np.unique(mesh.quads["helper-lower-teeth"])], upper=False),
+        "tongue": mouth_parts.tongue(base, mesh.quads["helper-tongue"]),
+        "eye_l": mouth_parts.eyeball(centre, 0.995 * radius),
+        "eye_r": mouth_parts.eyeball(centre * [-1, 1, 1], 0.995 * radius),
+    }
+    out = mouth_parts.tongue(base + mesh.face_unit("tongueOut"), mesh.quads["helper-tongue"]).positions
+    tongue_out = {"tongueOut": _sparse(out - parts["tongue"].positions)}
+    for name, part in parts.items():
+        attributes = {"POSITION": _metres(part.positions - origin), "_MATERIAL": _bytes(part.material)}
+        meshes[name] = MeshArrays(part.triangles, attributes, tongue_out if name == "tongue" else {})
+    return Head(meshes, METRES * (centre - origin), float(METRES * radius), origin)
+
+
+def _hinge(base: Doubles, mesh: BaseMesh, origin: Doubles) -> tuple[Doubles, float]:
+    """The jaw's axis (a point of it) and the angle in radians of the shape jawOpen, fitted to the lower teeth."""
+    teeth = np.unique(mesh.quads["helper-lower-teeth"])
+    before = (base[teeth] - origin)[:, 1:]
+    after = before + mesh.face_unit("jawOpen")[teeth][:, 1:]
+    u, _, vt = np.linalg.svd((before - before.mean(0)).T @ (after - after.mean(0)))
+    turn = (u @ np.diag([1.0, np.sign(np.linalg.det(u @ vt))]) @ vt).T
+    move = after.mean(0) - turn @ before.mean(0)
+    pivot = np.linalg.solve(np.eye(2) - turn, move)
+    return np.array([0.0, *pivot]), float(np.arctan2(turn[1, 0], turn[0, 0]))
+
+
+def _jaw_weights(points: Doubles, opened: Doubles, pivot: Doubles, angle: float) -> Doubles:
+    """How far each skin vertex follows the jaw, 0..1: the part of the artists' jawOpen along the rigid rotation."""
+    arm = points - pivot
+    turned = arm.copy()
+    turned[:, 1] = np.cos(angle) * arm[:, 1] - np.sin(angle) * arm[:, 2]
+    turned[:, 2] = np.sin(angle) * arm[:, 1] + np.cos(angle) * arm[:, 2]
+    move = turned - arm
+    return np.clip((opened * move).sum(1) / np.maximum((move**2).sum(1), 1e-4), 0, 1)
+
+
+def _metres(positions: Doubles) -> np.typing.NDArray[np.float32]:
+    return (METRES * positions).astype(np.float32)
+
+
+def _bytes(weights: Doubles) -> np.typing.NDArray[np.uint8]:
+    return np.round(255 * np.clip(weights, 0, 1)).astype(np.uint8)
+
+
+def _sparse(offsets: Doubles) -> Shape:
+    metres = (METRES * offsets).astype(np.float32)
+    moved = np.flatnonzero(np.abs(metres).max(1) > _SMALLEST_OFFSET)
+    moved = moved if len(moved) else np.array([0])  # a sparse accessor needs one entry
+    return Shape(moved.astype(np.int32), metres[moved])

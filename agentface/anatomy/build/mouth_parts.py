@@ -1,0 +1,137 @@
+"""Single teeth with gums along the base mesh's dental arches, the tongue, and the eyeballs."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from agentface.anatomy.build.subdivide import catmull_clark
+from agentface.conventions import Doubles, Indices
+
+# Mean mesiodistal widths and crown heights in millimetres, from the middle outward (Wheeler's dental anatomy).
+_UPPER = ((8.5, 10.5), (6.5, 9.0), (7.5, 10.0), (7.0, 8.5), (7.0, 8.5), (9.5, 7.5), (9.0, 7.0))
+_LOWER = ((5.2, 9.0), (5.6, 9.2), (6.8, 10.0), (7.0, 8.5), (7.1, 8.0), (10.0, 7.5), (9.5, 7.0))
+_AROUND, _ALONG = 10, 4
+
+
+@dataclass(frozen=True, slots=True)
+class PartMesh:
+    """Positions ``(P, 3)`` in decimetres, triangles, and material weights ``(P, 4)``: tooth, gum, tongue, eye."""
+
+    positions: Doubles
+    triangles: Indices
+    material: Doubles
+
+
+def dental_arch(strip: Doubles, *, upper: bool) -> PartMesh:
+    """Fourteen teeth and their gum, fitted to the vertices ``strip (S, 3)`` of the base mesh's row of teeth."""
+    half_width = np.abs(strip[:, 0]).max() * 0.96
+    back, front = strip[:, 2].min(), strip[:, 2].max() - 0.02
+    depth = front - back
+    turn = np.linspace(0.0, 0.5 * np.pi, 400)
+    arch = np.stack([half_width * np.sin(turn), back + depth * np.cos(turn) ** 0.8], 1)
+    length = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(arch, axis=0), axis=1))])
+    edge = strip[:, 1].min() if upper else strip[:, 1].max()
+    table = np.array(_UPPER if upper else _LOWER) / 100.0
+    table[:, 0] *= min(1.0, length[-1] * 0.98 / table[:, 0].sum())
+    out = 1.0 if upper else -1.0
+    crowns, start = [], 0.0
+    for width, height in table:
+        middle = start + 0.5 * width
+        start += width
+        at = np.array([np.interp(middle, length, arch[:, 0]), edge, np.interp(middle, length, arch[:, 1])])
+        ahead = np.interp(middle + 0.01, length, arch[:, 0]) - at[0], np.interp(middle + 0.01, length, arch[:, 1]) - at[2]
+        across = np.array([ahead[0], 0.0, ahead[1]]) / np.hypot(*ahead)
+        for side in (1.0, -1.0):
+            flip = np.array([side, 1.0, 1.0])
+            crowns.append(_crown(at * flip, across * flip, width, height, out))
+    crowns.append(_gum(arch, edge, out))
+    return _joined(crowns)
+
+
+def _crown(at: Doubles, across: Doubles, width: float, height: float, out: float) -> PartMesh:
+    outward = np.cross(across, [0.0, 1.0, 0.0])
+    outward *= np.sign(outward[2] + 1e-9 + 0.3 * outward[0] * np.sign(at[0]))
+    turn = np.linspace(0, 2 * np.pi, _AROUND, endpoint=False)
+    rows = []
+    for t in np.linspace(0.0, 1.0, _ALONG):
+        # a crown is widest a third up from its edge, and narrows towards the gum
+        wide = 0.5 * width * (0.90 + 0.08 * np.sin(np.pi * min(1.0, t + 0.25)) - 0.14 * t)
+        thick = (0.010 + 0.026 * t**0.8) + 0.2 * max(0.0, width - 0.08)
+        ring = np.sign(np.cos(turn)) * np.abs(np.cos(turn)) ** 0.6, np.sign(np.sin(turn)) * np.abs(np.sin(turn)) ** 0.7
+        rows.append(at + np.outer(ring[0] * wide, across) + np.outer(ring[1] * thick, outward) + [0, out * height * t, 0])
+    cap = rows[0].mean(0) - [0, out * 0.004, 0]
+    positions = np.concatenate([*rows, [cap]])
+    faces = _tube(_AROUND, _ALONG, closed=True)
+    faces += [[(i + 1) % _AROUND, i, len(positions) - 1] for i in range(_AROUND)]
+    return PartMesh(positions, _facing_out(positions, np.array(faces, np.int32)), np.tile([1.0, 0, 0, 0], (len(positions), 1)))
+
+
+def _gum(arch: Doubles, edge: float, out: float) -> PartMesh:
+    path = np.concatenate([(arch * [-1, 1])[::-20], arch[20::20]])
+    along = np.gradient(path, axis=0)
+    normal = np.stack([along[:, 1], -along[:, 0]], 1)
+    normal /= np.linalg.norm(normal, axis=1, keepdims=True)
+    normal *= np.sign(normal[len(normal) // 2, 1])
+    profile = ((0.030, 0.072), (0.052, 0.095), (0.058, 0.13), (0.040, 0.18), (-0.05, 0.18), (-0.05, 0.08))
+    rows = []
+    for offset, height in profile:
+        flat = path + normal * offset
+        rows.append(np.stack([flat[:, 0], np.full(len(flat), edge + out * height), flat[:, 1]], 1))
+    positions = np.concatenate(rows)
+    faces = np.array(_tube(len(path), len(profile), closed=False), np.int32)
+    faces = faces if out > 0 else faces[:, ::-1]
+    return PartMesh(positions, faces[:, ::-1], np.tile([0, 1.0, 0, 0], (len(positions), 1)))
+
+
+def tongue(positions: Doubles, quads: Indices) -> PartMesh:
+    """The base mesh's tongue, subdivided once: ``positions (N, 3)`` of the whole base mesh, ``quads`` of the tongue."""
+    used, inverse = np.unique(quads, return_inverse=True)
+    local = inverse.reshape(-1, 4).astype(np.int32)
+    level = catmull_clark(local, len(used))
+    placed = np.asarray(level.matrix @ positions[used])
+    triangles = np.concatenate([level.quads[:, [0, 1, 2]], level.quads[:, [0, 2, 3]]])
+    return PartMesh(placed, triangles.astype(np.int32), np.tile([0, 0, 1.0, 0], (len(placed), 1)))
+
+
+def eyeball(centre: Doubles, radius: float) -> PartMesh:
+    """A globe with a bulging cornea looking along +Z; vertices in rings round the axis, from the cornea's apex back."""
+    around, along = 32, 20
+    polar = np.concatenate([np.linspace(0, 0.62, 9)[1:], np.linspace(0.62, 0.72 * np.pi, along - 8)[1:]])
+    turn = np.linspace(0, 2 * np.pi, around, endpoint=False)
+    bulge = 1 + 0.075 * np.clip(1 - np.sin(polar) / 0.47, 0, 1) ** 0.8 * (polar < 1.5)
+    ring = np.stack([np.cos(turn), np.sin(turn)], 1)
+    rows = [np.column_stack([ring * np.sin(p), np.full(around, np.cos(p))]) * b for p, b in zip(polar, bulge, strict=True)]
+    positions = np.concatenate([[[0, 0, 1.075]], *rows])
+    faces = [[0, 1 + i, 1 + (i + 1) % around] for i in range(around)]
+    faces += [[1 + corner for corner in face] for face in _tube(around, len(rows), closed=True)]
+    placed = positions * radius + centre
+    return PartMesh(placed, _facing_out(placed, np.array(faces, np.int32)), np.tile([0, 0, 0, 1.0], (len(placed), 1)))
+
+
+def _tube(around: int, rows: int, *, closed: bool) -> list[list[int]]:
+    faces = []
+    for row in range(rows - 1):
+        for i in range(around if closed else around - 1):
+            a, b = row * around + i, row * around + (i + 1) % around
+            faces += [[a, b, a + around], [b, b + around, a + around]]
+    return faces
+
+
+def _facing_out(positions: Doubles, triangles: Indices) -> Indices:
+    middle = positions.mean(0)
+    a, b, c = (positions[triangles[:, i]] for i in range(3))
+    inward = ((np.cross(b - a, c - a)) * ((a + b + c) / 3 - middle)).sum(1) < 0
+    result = triangles.copy()
+    result[inward] = triangles[inward][:, ::-1]
+    return result
+
+
+def _joined(parts: list[PartMesh]) -> PartMesh:
+    starts = np.cumsum([0, *(len(part.positions) for part in parts)])
+    return PartMesh(
+        np.concatenate([part.positions for part in parts]),
+        np.concatenate([part.triangles + start for part, start in zip(parts, starts, strict=False)]).astype(np.int32),
+        np.concatenate([part.material for part in parts]),
+    )

@@ -1,0 +1,67 @@
+"""Named points of the face, found by vertex: what muscles are anchored to on any face."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import numpy as np
+from pydantic import Field
+
+from agentface.config import Document, Table
+from agentface.conventions import SIDES, Floats
+
+LANDMARKS: tuple[str, ...] = (
+    "hairline_middle", "glabella", "nasion", "nose_tip", "subnasale", "upper_lip_middle", "lower_lip_middle", "chin_fold",
+    "pogonion", "menton",
+)  # fmt: skip
+PAIRED_LANDMARKS: tuple[str, ...] = (
+    "brow_inner", "brow_middle", "brow_outer", "inner_canthus", "outer_canthus", "lid_upper", "lid_lower", "infraorbital",
+    "cheekbone", "zygion", "alare", "mouth_corner", "upper_lip_side", "lower_lip_side", "cheek", "jaw_side", "gonion",
+    "ear_front", "pupil",
+)  # fmt: skip
+
+
+class LandmarkRow(Table):
+    """One landmark: the vertices whose mean it is, and its MPEG-4 feature point where it has one."""
+
+    vertices: Annotated[list[int], Field(min_length=1)]
+    feature_point: str = ""
+
+
+class FeaturePointsFile(Table):
+    """``feature_points.yaml``."""
+
+    landmarks: dict[str, LandmarkRow]
+
+
+class Landmarks(dict[str, Floats]):
+    """Name to position ``(3,)`` in metres at rest; paired names carry ``_l`` or ``_r``."""
+
+    @property
+    def eye_separation(self) -> float:
+        """The distance between the pupils in metres: the unit of lengths in ``muscles.yaml`` (MPEG-4's ES0)."""
+        return float(np.linalg.norm(self["pupil_l"] - self["pupil_r"]))
+
+
+def load_landmarks(path: Path, vertices: Floats, extra: dict[str, Floats]) -> Landmarks:
+    """Read ``feature_points.yaml``; ``extra`` holds landmarks that are no vertices (the pupils).
+
+    Raises DataError when a landmark is missing, unknown or names a vertex that the mesh does not have.
+    """
+    document = Document(path)
+    file = document.parse(FeaturePointsFile)
+    known = {*LANDMARKS, *(f"{name}_{side}" for name in PAIRED_LANDMARKS for side in SIDES)}
+    for name in sorted(file.landmarks.keys() - known):
+        document.fault(("landmarks", name), "a landmark that agentface knows", name, f"known: {', '.join(sorted(known))}")
+    for name in sorted(known - file.landmarks.keys() - extra.keys()):
+        document.fault(("landmarks",), f"the landmark {name}", "none")
+    result = Landmarks(extra)
+    for name, row in file.landmarks.items():
+        bad = [index for index in row.vertices if not 0 <= index < len(vertices)]
+        if bad:
+            document.fault(("landmarks", name, "vertices"), f"vertices in 0..{len(vertices) - 1}", str(bad))
+            continue
+        result[name] = vertices[row.vertices].mean(axis=0)
+    document.check()
+    return result

@@ -1,0 +1,190 @@
+"""A face as an asset: everything in ``regions/<face>/``, read and checked once."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import Annotated, TypeVar
+
+import numpy as np
+from pydantic import Field
+
+from agentface.anatomy.glb import MeshArrays, Shape, read_glb
+from agentface.anatomy.landmarks import Landmarks, load_landmarks
+from agentface.anatomy.muscles import MusclesFile, place_muscles, read_muscles
+from agentface.anatomy.regions import Regions, load_regions
+from agentface.config import Document, Table, load
+from agentface.conventions import SIDES, Floats, Indices
+from agentface.deform.vector_muscle import MuscleSet
+from agentface.errors import DataError, Fault
+from agentface.resources import DEFAULT_FACE, face_folder
+
+_Point = Annotated[list[float], Field(min_length=3, max_length=3)]
+PARTS = ("teeth_upper", "teeth_lower", "tongue", "eye_l", "eye_r")
+
+
+class EyesFile(Table):
+    """``eyes.yaml``: the left eyeball in metres, and how far the eyes turn."""
+
+    centre: _Point
+    radius: Annotated[float, Field(gt=0)]
+    yaw_limit_deg: Annotated[float, Field(gt=0, le=60)]
+    pitch_limit_deg: Annotated[float, Field(gt=0, le=60)]
+
+
+class JawFile(Table):
+    """``jaw.yaml``: a point of the hinge in metres (the axis is parallel to X) and the widest opening."""
+
+    pivot: _Point
+    widest_deg: Annotated[float, Field(gt=0, le=60)]
+
+
+class RingHalves(Table):
+    """One ring of vertices: the upper and the lower half, each from +x to -x with both ends."""
+
+    upper: list[int]
+    lower: list[int]
+
+
+class LipsFile(Table):
+    """``lips.yaml``: rings round the mouth, from the seam outward."""
+
+    rings: Annotated[list[RingHalves], Field(min_length=1)]
+
+
+class EyelidsFile(Table):
+    """``eyelids.yaml``: rings round each eye, from the lid's inner margin outward."""
+
+    rings: dict[str, Annotated[list[RingHalves], Field(min_length=1)]]
+
+
+_Rings = TypeVar("_Rings", LipsFile, EyelidsFile)
+
+
+@dataclass(frozen=True, eq=False)
+class HeadModel:
+    """A face at rest and what its deformers need.
+
+    Attributes:
+        name: the name of its folder.
+        folder: where it was read from.
+        vertices: ``(V, 3)`` float32 m, the skin at rest.
+        triangles: ``(T, 3)`` int32, counter-clockwise seen from outside.
+        material: ``(V, 4)`` float32 0..1: lip, inside of the mouth, wet lid margin, ear.
+        shade: ``(V, 4)`` float32 0..1: ambient light that reaches the vertex, hair cover, two spare.
+        jaw_weights: ``(V,)`` float32 0..1, how far a vertex follows the jaw.
+        shapes: the artists' ARKit-named shapes of the skin.
+        parts: the other meshes: teeth, tongue, eyeballs.
+        regions: the eleven regions and the sub-regions.
+        landmarks: named points.
+        eyes, jaw, lips, eyelids: the tables of the same names.
+        muscles_file: the table of the vector muscles.
+    """
+
+    name: str
+    folder: Path
+    vertices: Floats
+    triangles: Indices
+    material: Floats
+    shade: Floats
+    jaw_weights: Floats
+    shapes: dict[str, Shape]
+    parts: dict[str, MeshArrays]
+    regions: Regions
+    landmarks: Landmarks
+    eyes: EyesFile
+    jaw: JawFile
+    lips: LipsFile
+    eyelids: EyelidsFile
+    muscles_file: MusclesFile
+
+    @cached_property
+    def muscles(self) -> MuscleSet:
+        """The vector muscles in metres."""
+        return place_muscles(self.muscles_file, self.landmarks, self.regions, self.vertices, self.triangles)
+
+    @cached_property
+    def mirror(self) -> Indices:
+        """``(V,)``: the vertex that is each vertex's image in the median plane, found by place."""
+        order = np.lexsort(np.round(self.vertices * [1, 1, 1], 5).T)
+        image = np.lexsort(np.round(self.vertices * [-1, 1, 1], 5).T)
+        result = np.empty(len(order), np.int32)
+        result[image] = order
+        return result
+
+    def eye_centre(self, side: str) -> Floats:
+        """The centre ``(3,)`` m of the eyeball of side ``l`` or ``r``."""
+        return np.array(self.eyes.centre, np.float32) * ([1, 1, 1] if side == SIDES[0] else [-1, 1, 1])
+
+
+def load_model(face: str | Path = DEFAULT_FACE) -> HeadModel:
+    """Read a face by name or from a folder.
+
+    Raises UnknownNameError for an unknown face and DataError with the faults of the first file that has any.
+    """
+    folder = face_folder(face)
+    meshes = read_glb(folder / "head.glb")
+    skin = _checked_skin(folder / "head.glb", meshes)
+    vertices = np.ascontiguousarray(skin.attributes["POSITION"], np.float32)
+    eyes = load(folder / "eyes.yaml", EyesFile)
+    pupils = {f"pupil_{side}": _pupil(eyes, side) for side in SIDES}
+    return HeadModel(
+        name=folder.name,
+        folder=folder,
+        vertices=vertices,
+        triangles=skin.triangles,
+        material=_fractions(skin, "_MATERIAL"),
+        shade=_fractions(skin, "_SHADE"),
+        jaw_weights=skin.attributes["_JAW"].astype(np.float32),
+        shapes=skin.shapes,
+        parts={name: meshes[name] for name in PARTS},
+        regions=load_regions(folder / "regions.yaml", len(vertices)),
+        landmarks=load_landmarks(folder / "feature_points.yaml", vertices, pupils),
+        eyes=eyes,
+        jaw=load(folder / "jaw.yaml", JawFile),
+        lips=_load_rings(folder / "lips.yaml", LipsFile, len(vertices)),
+        eyelids=_load_rings(folder / "eyelids.yaml", EyelidsFile, len(vertices)),
+        muscles_file=read_muscles(folder / "muscles.yaml"),
+    )
+
+
+def _pupil(eyes: EyesFile, side: str) -> Floats:
+    centre = np.array(eyes.centre, np.float32) + np.array([0, 0, eyes.radius], np.float32)
+    return centre * np.array([1 if side == SIDES[0] else -1, 1, 1], np.float32)
+
+
+def _fractions(mesh: MeshArrays, attribute: str) -> Floats:
+    return mesh.attributes[attribute].astype(np.float32) / np.float32(255)
+
+
+def _load_rings(path: Path, model: type[_Rings], vertex_count: int) -> _Rings:
+    document = Document(path)
+    file = document.parse(model)
+    groups = file.rings.items() if isinstance(file, EyelidsFile) else [("", file.rings)]
+    if isinstance(file, EyelidsFile) and set(file.rings) != set(SIDES):
+        document.fault(("rings",), "the keys l and r", ", ".join(file.rings))
+    for side, rings in groups:
+        for i, ring in enumerate(rings):
+            bad = [vertex for vertex in ring.upper + ring.lower if not 0 <= vertex < vertex_count]
+            if bad:
+                where = ("rings", side, i) if side else ("rings", i)
+                document.fault(where, f"vertices in 0..{vertex_count - 1}", str(bad[:4]))
+    document.check()
+    return file
+
+
+def _checked_skin(path: Path, meshes: dict[str, MeshArrays]) -> MeshArrays:
+    faults = [Fault(path, None, name, "a mesh of this name", "none") for name in ("skin", *PARTS) if name not in meshes]
+    for name, mesh in meshes.items():
+        positions = mesh.attributes.get("POSITION", np.zeros((0, 3)))
+        if not len(positions) or not np.isfinite(positions).all():
+            faults.append(Fault(path, None, f"{name}.POSITION", "finite coordinates", "NaN, infinity or none"))
+        elif len(mesh.triangles) and not 0 <= mesh.triangles.min() <= mesh.triangles.max() < len(positions):
+            faults.append(Fault(path, None, f"{name}.indices", f"vertices in 0..{len(positions) - 1}", f"{mesh.triangles.max()}"))
+    for attribute in ("_MATERIAL", "_SHADE", "_JAW"):
+        if "skin" in meshes and attribute not in meshes["skin"].attributes:
+            faults.append(Fault(path, None, f"skin.{attribute}", "this vertex attribute", "none"))
+    if faults:
+        raise DataError(faults)
+    return meshes["skin"]

@@ -1,0 +1,145 @@
+"""``muscles.yaml``: the vector muscles of one face, placed relative to its landmarks.
+
+Lengths are in eye separations (the distance between the pupils), so that the same table fits a smaller head.
+An entry describes the left muscle; the right one is its mirror image.
+"""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import Annotated, Literal
+
+import numpy as np
+from pydantic import Field
+
+from agentface.anatomy.landmarks import LANDMARKS, PAIRED_LANDMARKS, Landmarks
+from agentface.anatomy.regions import HALF_REGIONS, SUB_REGIONS, Regions
+from agentface.config import Document, Table
+from agentface.conventions import SIDES, Doubles, Floats, Indices
+from agentface.deform.vector_muscle import MuscleSet
+from agentface.parameters import VECTOR_MUSCLES
+
+_Length = Annotated[float, Field(gt=0, le=5)]
+_Offset = Annotated[list[Annotated[float, Field(ge=-5, le=5)]], Field(min_length=3, max_length=3)]
+_MUSCLES = tuple(name.removesuffix("_l") for name in VECTOR_MUSCLES if name.endswith("_l"))
+_MOVABLE = (*HALF_REGIONS, *SUB_REGIONS)
+
+
+class Anchor(Table):
+    """A point: a landmark (paired ones without side) and an offset [lateral, up, forward] in eye separations."""
+
+    at: str
+    offset: _Offset = [0.0, 0.0, 0.0]
+
+
+class Wrinkles(Table):
+    """How many wrinkles a muscle raises and how high they are, in eye separations."""
+
+    count: Annotated[int, Field(ge=1, le=12)]
+    height: Annotated[float, Field(ge=0, le=0.1)]
+
+
+class MuscleRow(Table):
+    """One pair of vector muscles.
+
+    ``origin`` is the bone end, ``insertion`` the skin end; ``zone_deg`` half the angle of the zone of influence;
+    ``fall_start`` (Rs) and ``fall_finish`` (Rf) distances from the origin; ``elasticity`` (k) the largest
+    displacement. ``regions`` says what the muscle may move, ``not_regions`` what of it it may not; its pull
+    fades out over ``fade`` before the border.
+    """
+
+    origin: Anchor
+    insertion: Anchor
+    zone_deg: Annotated[float, Field(gt=0, le=90)]
+    fall_start: _Length
+    fall_finish: _Length
+    elasticity: Annotated[float, Field(ge=0, le=1)]
+    regions: Annotated[list[str], Field(min_length=1)]
+    not_regions: list[str] = []
+    fade: Annotated[float, Field(ge=0, le=1)] = 0.12
+    wrinkles: Wrinkles | None = None
+
+
+class MusclesFile(Table):
+    """``muscles.yaml``."""
+
+    falloff: Literal["smooth", "waters"]
+    muscles: dict[str, MuscleRow]
+
+
+def read_muscles(path: Path) -> MusclesFile:
+    """The checked table; raises DataError naming every unknown muscle, landmark and region, and every missing muscle."""
+    document = Document(path)
+    file = document.parse(MusclesFile)
+    for name in sorted(set(_MUSCLES) - file.muscles.keys()):
+        document.fault(("muscles",), f"an entry for {name}", "none")
+    for name, row in file.muscles.items():
+        where = ("muscles", name)
+        if name not in _MUSCLES:
+            document.fault(where, "the name of a vector muscle without side", name, f"known: {', '.join(_MUSCLES)}")
+        for key, anchor in (("origin", row.origin), ("insertion", row.insertion)):
+            if anchor.at not in (*LANDMARKS, *PAIRED_LANDMARKS):
+                known = ", ".join((*LANDMARKS, *PAIRED_LANDMARKS))
+                document.fault((*where, key, "at"), "a landmark (paired ones without side)", anchor.at, f"known: {known}")
+        for key, names in (("regions", row.regions), ("not_regions", row.not_regions)):
+            for i, region in enumerate(names):
+                if region not in _MOVABLE:
+                    document.fault((*where, key, i), f"one of {', '.join(_MOVABLE)}", region)
+        if row.fall_finish <= row.fall_start:
+            document.fault((*where, "fall_finish"), f"more than fall_start, {row.fall_start}", str(row.fall_finish))
+    document.check()
+    return file
+
+
+def place_muscles(file: MusclesFile, landmarks: Landmarks, regions: Regions, vertices: Floats, triangles: Indices) -> MuscleSet:
+    """The muscles of a face in metres, in the order of ``VECTOR_MUSCLES``."""
+    unit = landmarks.eye_separation
+    borders = _Borders(regions, vertices, triangles)
+    rows = [(file.muscles[name[:-2]], name[-1]) for name in VECTOR_MUSCLES]
+    return MuscleSet(
+        names=VECTOR_MUSCLES,
+        origin=np.array([anchor_point(row.origin, side, landmarks) for row, side in rows]),
+        insertion=np.array([anchor_point(row.insertion, side, landmarks) for row, side in rows]),
+        zone=np.array([math.radians(row.zone_deg) for row, _ in rows]),
+        fall_start=np.array([unit * row.fall_start for row, _ in rows]),
+        fall_finish=np.array([unit * row.fall_finish for row, _ in rows]),
+        elasticity=np.array([unit * row.elasticity for row, _ in rows]),
+        reach=np.stack([borders.reach(row, unit) for row, _ in rows]),
+        falloff=file.falloff,
+    )
+
+
+def anchor_point(anchor: Anchor, side: str, landmarks: Landmarks) -> Doubles:
+    """An anchor's position ``(3,)`` in metres on one side of the face."""
+    name = f"{anchor.at}_{side}" if anchor.at in PAIRED_LANDMARKS else anchor.at
+    mirrored = np.array([1.0 if side == SIDES[0] else -1.0, 1.0, 1.0])
+    return np.asarray(landmarks[name] + landmarks.eye_separation * mirrored * anchor.offset, np.float64)
+
+
+class _Borders:
+    """Distances along the skin to the border of what a muscle may move."""
+
+    def __init__(self, regions: Regions, vertices: Floats, triangles: Indices) -> None:
+        self._regions = regions
+        ends = np.concatenate([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]])
+        self._from, self._to = np.concatenate([ends, ends[:, ::-1]]).T
+        self._length = np.linalg.norm(vertices[self._from] - vertices[self._to], axis=1)
+        self._known: dict[tuple[str, ...], Floats] = {}
+
+    def reach(self, row: MuscleRow, unit: float) -> Floats:
+        """``(V,)`` weights: 0 outside the muscle's regions, rising to 1 over ``fade`` inside."""
+        key = (*sorted(row.regions), "|", *sorted(row.not_regions))
+        if key not in self._known:
+            inside = self._regions.mask(row.regions)
+            if row.not_regions:
+                inside &= ~self._regions.mask(row.not_regions)
+            self._known[key] = self._distance(inside)
+        t = np.clip(self._known[key] / max(row.fade * unit, 1e-9), 0.0, 1.0)
+        return (t * t * (3.0 - 2.0 * t)).astype(np.float32)
+
+    def _distance(self, inside: np.typing.NDArray[np.bool_], rounds: int = 24) -> Floats:
+        distance = np.where(inside, np.float32(1e3), np.float32(0.0))
+        for _ in range(rounds):
+            np.minimum.at(distance, self._to, distance[self._from] + self._length)
+        return distance

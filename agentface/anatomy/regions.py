@@ -1,0 +1,110 @@
+"""The eleven regions of the face and their sub-regions, as ranges of vertices (Bui et al., section 2.1)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated
+
+import numpy as np
+from pydantic import Field
+
+from agentface.config import Document, Table
+from agentface.conventions import SIDES, Bytes
+from agentface.errors import UnknownNameError
+
+HALF_REGIONS = ("lower_face", "middle_face", "lower_eyelid", "upper_eyelid", "upper_face")
+REST = "rest_of_head"
+REGIONS: tuple[str, ...] = (*(f"{name}_{side}" for side in ("r", "l") for name in HALF_REGIONS), REST)
+"""The paper's regions 1 to 11, in its order: the right half, the left half, the rest."""
+SUB_REGIONS = {"lower_lip": "lower_face", "upper_lip": "middle_face", "eyebrow": "upper_face"}
+"""Each sub-region and the region that it is part of."""
+
+_Range = Annotated[list[int], Field(min_length=2, max_length=2)]
+
+
+class RegionsFile(Table):
+    """``regions.yaml``: the first and the last vertex of each region and sub-region, both included."""
+
+    vertices: int
+    regions: dict[str, _Range]
+    sub_regions: dict[str, _Range]
+
+
+@dataclass(frozen=True, slots=True)
+class Regions:
+    """Which region each vertex is in.
+
+    ``region_of`` is ``(V,)`` uint8, an index into ``REGIONS``; ``ranges`` maps the name of a region or a
+    sub-region (with its side) to ``(first, last)``, both included.
+    """
+
+    region_of: Bytes
+    ranges: dict[str, tuple[int, int]]
+
+    def members(self, name: str) -> slice:
+        """The vertices of a region or sub-region, for example ``upper_lip_l``; raises UnknownNameError."""
+        if name not in self.ranges:
+            raise UnknownNameError("region", name, tuple(self.ranges))
+        first, last = self.ranges[name]
+        return slice(first, last + 1)
+
+    def mask(self, names: list[str]) -> np.typing.NDArray[np.bool_]:
+        """``(V,)`` true where a vertex is in one of the regions, named without side for both sides."""
+        inside = np.zeros(len(self.region_of), np.bool_)
+        for name in names:
+            for full in with_sides(name):
+                inside[self.members(full)] = True
+        return inside
+
+
+def with_sides(name: str) -> tuple[str, ...]:
+    """A region named without its side as its two halves; other names as they are."""
+    if name in HALF_REGIONS or name in SUB_REGIONS:
+        return tuple(f"{name}_{side}" for side in SIDES)
+    return (name,)
+
+
+def load_regions(path: Path, vertex_count: int) -> Regions:
+    """Read ``regions.yaml``; raises DataError when ranges overlap, leave a gap or do not fit the mesh."""
+    document = Document(path)
+    file = document.parse(RegionsFile)
+    if file.vertices != vertex_count:
+        document.fault(("vertices",), f"{vertex_count}, as in head.glb", str(file.vertices))
+    _check_names(document, "regions", file.regions, REGIONS)
+    subs = tuple(f"{name}_{side}" for name in SUB_REGIONS for side in SIDES)
+    _check_names(document, "sub_regions", file.sub_regions, subs)
+    _check_cover(document, file.regions, vertex_count)
+    for name, (first, last) in file.sub_regions.items():
+        owner = f"{SUB_REGIONS.get(name[:-2], '')}{name[-2:]}"
+        low, high = file.regions.get(owner, [0, -1])
+        if first > last or not (low <= first and last <= high):
+            document.fault(("sub_regions", name), f"a range inside {owner}, {low}..{high}", f"{first}..{last}")
+    document.check()
+    region_of = np.empty(vertex_count, np.uint8)
+    for index, name in enumerate(REGIONS):
+        first, last = file.regions[name]
+        region_of[first : last + 1] = index
+    ranges = {name: (first, last) for name, (first, last) in (file.regions | file.sub_regions).items()}
+    return Regions(region_of, ranges)
+
+
+def _check_names(document: Document, key: str, found: dict[str, list[int]], known: tuple[str, ...]) -> None:
+    for name in found.keys() - set(known):
+        document.fault((key, name), f"one of {', '.join(known)}", name)
+    for name in set(known) - found.keys():
+        document.fault((key,), f"a range for {name}", "none")
+
+
+def _check_cover(document: Document, ranges: dict[str, list[int]], vertex_count: int) -> None:
+    due = 0
+    for name, (first, last) in sorted(ranges.items(), key=lambda item: item[1]):
+        if first < due:
+            document.fault(("regions", name), f"to start at vertex {due}: no overlap", f"{first}")
+        elif first > due:
+            document.fault(("regions", name), f"to start at vertex {due}: no gap", f"{first}")
+        if last < first:
+            document.fault(("regions", name), f"a last vertex of at least {first}", f"{last}")
+        due = max(due, last + 1)
+    if due != vertex_count:
+        document.fault(("regions",), f"ranges up to vertex {vertex_count - 1}", f"up to {due - 1}")

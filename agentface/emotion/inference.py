@@ -1,0 +1,65 @@
+"""From six intensities to muscle contractions, by the rules."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from functools import cache
+
+import numpy as np
+
+from agentface.conventions import Doubles
+from agentface.emotion.explanation import Explanation, explain
+from agentface.emotion.rules import RuleBase
+from agentface.emotion.selector import MODES
+from agentface.emotion.state import EMOTIONS, EmotionState
+from agentface.parameters import COUNT, MUSCLES, FacePose, indices_of
+
+State = EmotionState | Mapping[str, float]
+
+
+class Inference:
+    """Mamdani inference over a rule base, compiled.
+
+    Deterministic, without memory, safe to share between threads. Where a state is asked for, a mapping from
+    emotion names to intensities will do; a wrong one raises UnknownNameError or InvalidValueError.
+    """
+
+    def __init__(self, rulebase: RuleBase) -> None:
+        from agentface.emotion.kernels import infer
+
+        self.rulebase = rulebase
+        self._infer = infer
+        modes = rulebase.modes
+        rows = [(muscle, rules) for mode in modes for muscle, rules in mode.consequents.items()]
+        self._first_row = np.cumsum([0, *(len(mode.consequents) for mode in modes)], dtype=np.int32)
+        self._muscle_of_row = np.array([MUSCLES.index(muscle) for muscle, _ in rows], np.int32)
+        self._rules = np.zeros((len(rows), 5, 5), np.int8)
+        for row, (_, rules) in enumerate(rows):
+            self._rules[row] = rules if rules.ndim == 2 else rules[:, None]
+        self._modes = np.zeros((len(EMOTIONS), len(EMOTIONS)), np.int32)
+        for number, mode in enumerate(MODES):
+            self._modes[EMOTIONS.index(mode[0]), EMOTIONS.index(mode[-1])] = number
+        self._places = np.array([(index, row) for row, muscle in enumerate(MUSCLES) for index in indices_of(muscle)])
+
+    def contractions(self, state: State) -> Doubles:
+        """The contraction of each muscle, ``(len(MUSCLES),)`` float64 in 0..1, in the order of ``MUSCLES``."""
+        out = np.empty(len(MUSCLES))
+        intensities = EmotionState.of(state).values
+        self._infer(intensities, self.rulebase.gap, self._modes, self._first_row, self._muscle_of_row, self._rules, out)
+        return out
+
+    def pose(self, state: State) -> FacePose:
+        """The face that shows a state: both sides alike, gaze and head straight."""
+        values = np.zeros(COUNT, np.float32)
+        values[self._places[:, 0]] = self.contractions(state)[self._places[:, 1]]
+        return FacePose(values)
+
+    def explain(self, state: State) -> Explanation:
+        """Which modes and rules made the contractions of a state."""
+        return explain(self.rulebase, EmotionState.of(state))
+
+
+@cache
+def default_inference() -> Inference:
+    """The inference over the rules that come with agentface, made once."""
+    return Inference(RuleBase.load())

@@ -1,0 +1,143 @@
+"""The fuzzy inference compiled: the selector of ``selector`` and the Mamdani step of ``mamdani``, for a whole state."""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+from numba import njit
+
+from agentface.conventions import Doubles, Indices
+from agentface.emotion.sets import (
+    CONTRACTION_CENTRES,
+    CONTRACTION_HALF_WIDTH,
+    INTENSITY_CENTRES,
+    INTENSITY_HALF_WIDTH,
+    UNIVERSE,
+)
+
+_SETS = len(CONTRACTION_CENTRES)
+_LOW, _HIGH = float(CONTRACTION_CENTRES[0]), float(CONTRACTION_CENTRES[-1])
+
+
+@njit(cache=True)
+def infer(
+    intensities: Doubles,
+    gap: float,
+    modes: Indices,
+    first_row: Indices,
+    muscle_of_row: Indices,
+    rules: npt.NDArray[np.int8],
+    out: Doubles,
+) -> None:
+    """Write the contraction of every muscle into ``out``.
+
+    Args:
+        intensities: (6,) float64 in 0..1.
+        gap: the selector's gap, above 0.
+        modes: (6, 6) int32: the mode of two emotions; on the diagonal that of one alone.
+        first_row: (modes + 1,) int32: where the rows of each mode begin.
+        muscle_of_row: (rows,) int32.
+        rules: (rows, 5, 5) int8: the contraction set for each intensity set of the mode's first and second emotion.
+        out: (muscles,) float64, overwritten.
+    """
+    out[:] = 0.0
+    count = len(intensities)
+    weights = np.zeros((count, count))
+    _weigh(intensities, gap, weights)
+    for first in range(count):
+        for second in range(first, count):
+            weight = weights[first, second]
+            if weight > 0.0:
+                strengths = _strengths(intensities[first], intensities[second], first == second)
+                mode = modes[first, second]
+                for row in range(first_row[mode], first_row[mode + 1]):
+                    out[muscle_of_row[row]] += weight * _contract(strengths, rules[row])
+    for muscle in range(len(out)):
+        out[muscle] = min(1.0, out[muscle])
+
+
+@njit(cache=True)
+def _weigh(intensities: Doubles, gap: float, weights: Doubles) -> None:
+    top = intensities.max()
+    if top <= 0.0:
+        return
+    count = len(intensities)
+    degrees = np.empty(count)
+    order = np.empty(count, np.int64)
+    for emotion in range(count):
+        degrees[emotion] = max(0.0, 1.0 - (top - intensities[emotion]) / min(2.0 * gap, top))
+        place = emotion
+        while place > 0 and degrees[order[place - 1]] < degrees[emotion]:
+            order[place] = order[place - 1]
+            place -= 1
+        order[place] = emotion
+    for size in range(1, count + 1):
+        share = degrees[order[size - 1]] - (degrees[order[size]] if size < count else 0.0)
+        if size == 1:
+            weights[order[0], order[0]] += share
+            continue
+        for i in range(size):
+            for j in range(i):
+                low, high = min(order[i], order[j]), max(order[i], order[j])
+                weights[low, high] += share / (size * (size - 1) / 2)
+
+
+@njit(cache=True)
+def _strengths(first: float, second: float, alone: bool) -> Doubles:
+    count = len(INTENSITY_CENTRES)
+    strengths = np.zeros((count, count))
+    for i in range(count):
+        one = max(0.0, 1.0 - abs(first - INTENSITY_CENTRES[i]) / INTENSITY_HALF_WIDTH)
+        for j in range(count):
+            two = max(0.0, 1.0 - abs(second - INTENSITY_CENTRES[j]) / INTENSITY_HALF_WIDTH)
+            strengths[i, j] = min(one, two)
+        if alone:
+            strengths[i, :] = 0.0
+            strengths[i, 0] = one
+    return strengths
+
+
+@njit(cache=True)
+def _contract(strengths: Doubles, rules: npt.NDArray[np.int8]) -> float:
+    cuts = np.zeros(_SETS)
+    for i in range(strengths.shape[0]):
+        for j in range(strengths.shape[1]):
+            if strengths[i, j] > cuts[rules[i, j]]:
+                cuts[rules[i, j]] = strengths[i, j]
+    return min(1.0, max(0.0, (_centroid(cuts) - _LOW) / (_HIGH - _LOW)))
+
+
+@njit(cache=True)
+def _centroid(cuts: Doubles) -> float:
+    extra = np.empty(2 * _SETS)
+    active = np.empty(_SETS, np.int64)
+    sets = 0
+    for number in range(_SETS):
+        if cuts[number] > 0.0:
+            reach = CONTRACTION_HALF_WIDTH * (1.0 - cuts[number])
+            extra[2 * sets] = CONTRACTION_CENTRES[number] - reach
+            extra[2 * sets + 1] = CONTRACTION_CENTRES[number] + reach
+            active[sets] = number
+            sets += 1
+    if sets == 1:
+        return CONTRACTION_CENTRES[active[0]]
+    found = np.sort(extra[: 2 * sets])
+    area, moment, left, low = 0.0, 0.0, 0.0, 0.0
+    grid, cut = 0, 0
+    while grid < len(UNIVERSE) or cut < len(found):
+        if cut == len(found) or (grid < len(UNIVERSE) and UNIVERSE[grid] <= found[cut]):
+            right = UNIVERSE[grid]
+            grid += 1
+        else:
+            right = found[cut]
+            cut += 1
+        high = 0.0
+        for place in range(sets):
+            number = active[place]
+            member = 1.0 - abs(right - CONTRACTION_CENTRES[number]) / CONTRACTION_HALF_WIDTH
+            high = max(high, min(cuts[number], member))
+        width = right - left
+        area += width * (low + high) / 2
+        moment += width * (low * (2 * left + right) + high * (left + 2 * right)) / 6
+        left, low = right, high
+    return moment / area

@@ -1,0 +1,92 @@
+"""The six emotions, the names people use for them, and :class:`EmotionState`, their intensities at one instant."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+import numpy as np
+
+from agentface.conventions import Doubles, check_fraction
+from agentface.errors import InvalidValueError, UnknownNameError
+
+EMOTIONS: tuple[str, ...] = ("happiness", "sadness", "anger", "fear", "disgust", "surprise")
+"""The big six of the W3C vocabularies for EmotionML, in the order of ``EmotionState.values``."""
+
+_ALIASES: dict[str, tuple[str, ...]] = {
+    "happiness": ("happy", "joy", "joyful", "smile"),
+    "sadness": ("sad", "sorrow", "unhappy"),
+    "anger": ("angry", "rage"),
+    "fear": ("afraid", "fearful", "scared"),
+    "disgust": ("disgusted",),
+    "surprise": ("surprised", "astonished"),
+}
+ALIASES: dict[str, str] = {alias: emotion for emotion, names in _ALIASES.items() for alias in names}
+"""Other words for an emotion, and the emotion they mean."""
+
+
+def canonical(name: object) -> str:
+    """The emotion that ``name`` means, whatever its case; raises UnknownNameError."""
+    word = name.strip().lower() if isinstance(name, str) else ""
+    emotion = ALIASES.get(word, word)
+    if emotion not in EMOTIONS:
+        raise UnknownNameError("emotion", name, (*EMOTIONS, *ALIASES))
+    return emotion
+
+
+class EmotionState(Mapping[str, float]):
+    """Six intensities in 0..1, immutable; a mapping from the name of an emotion to its intensity.
+
+    ``values`` is a read-only float64 array of six in the order of ``EMOTIONS``.
+    """
+
+    __slots__ = ("values",)
+
+    def __init__(self, values: Any = None) -> None:
+        given = np.zeros(len(EMOTIONS)) if values is None else np.asarray(values)
+        if given.shape != (len(EMOTIONS),):
+            raise InvalidValueError("EmotionState", f"{len(EMOTIONS)} intensities", given.shape)
+        array: Doubles = np.array(
+            [check_fraction(name, value) for name, value in zip(EMOTIONS, given.tolist(), strict=True)]
+        )
+        array.flags.writeable = False
+        self.values = array
+
+    @classmethod
+    def of(cls, intensities: Mapping[str, float] | None = None, /, **named: float) -> EmotionState:
+        """A state from names: ``EmotionState.of({"joy": 0.6})`` or ``EmotionState.of(joy=0.6)``; the rest are 0.
+
+        Raises UnknownNameError for a name, InvalidValueError for a value outside 0..1 or an emotion named twice.
+        """
+        if isinstance(intensities, EmotionState) and not named:
+            return intensities
+        values: dict[str, float] = {}
+        for name, value in (*(intensities or {}).items(), *named.items()):
+            emotion = canonical(name)
+            if emotion in values:
+                raise InvalidValueError(emotion, "each emotion once", name, "two of the names mean the same emotion")
+            values[emotion] = check_fraction(emotion, value)
+        return cls([values.get(emotion, 0.0) for emotion in EMOTIONS])
+
+    def as_dict(self) -> dict[str, float]:
+        """All six intensities by name."""
+        return dict(zip(EMOTIONS, self.values.tolist(), strict=True))
+
+    def __getitem__(self, name: str) -> float:
+        return float(self.values[EMOTIONS.index(canonical(name))])
+
+    def __contains__(self, name: object) -> bool:
+        return isinstance(name, str) and name in EMOTIONS
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(EMOTIONS)
+
+    def __len__(self) -> int:
+        return len(EMOTIONS)
+
+    def __hash__(self) -> int:
+        return hash(self.values.tobytes())
+
+    def __repr__(self) -> str:
+        active = ", ".join(f"{name}={value:.3g}" for name, value in self.as_dict().items() if value)
+        return f"EmotionState.of({active})"
