@@ -86,14 +86,8 @@ def _shown(value: Any) -> str:
     return text if len(text) <= 60 else text[:57] + "..."
 
 
-class _Loader(yaml.SafeLoader):
-    """YAML with the booleans and numbers of YAML 1.2, and without aliases, which can blow a small file up."""
-
-    def compose_node(self, parent: Any, index: Any) -> Any:
-        if self.check_event(yaml.AliasEvent):  # type: ignore[no-untyped-call]
-            mark = self.peek_event().start_mark  # type: ignore[no-untyped-call]
-            raise yaml.constructor.ConstructorError(None, None, "an alias; write the value out", mark)
-        return super().compose_node(parent, index)  # type: ignore[no-untyped-call]
+class _Loader(getattr(yaml, "CSafeLoader", yaml.SafeLoader)):  # type: ignore[misc]
+    """YAML with the booleans and numbers of YAML 1.2; the C parser where PyYAML has it."""
 
 
 def _resolvers() -> dict[str, list[Any]]:
@@ -125,7 +119,7 @@ def _read(path: Path) -> tuple[Any, dict[_Where, int], list[Fault]]:
         node = loader.get_single_node()
         if node is None:
             _stop(path, 1, "a YAML mapping", "an empty file")
-        data = _walk(loader, node, (), path, lines, faults)
+        data = _walk(loader, node, (), path, lines, faults, set())
     except OSError as error:
         _stop(path, None, "a readable file", error.strerror or type(error).__name__)
     except UnicodeDecodeError:
@@ -147,10 +141,15 @@ def _stop(path: Path, line: int | None, expected: str, got: str) -> NoReturn:
     raise DataError([Fault(path, line, "", expected, got)])
 
 
-def _walk(loader: _Loader, node: yaml.Node, where: _Where, path: Path, lines: dict[_Where, int], faults: list[Fault]) -> Any:
+def _walk(loader: _Loader, node: yaml.Node, where: _Where, path: Path, lines: dict[_Where, int], faults: list[Fault], seen: set[yaml.Node]) -> Any:
     lines.setdefault(where, node.start_mark.line + 1)
+    if isinstance(node, yaml.CollectionNode):
+        if node in seen:  # an alias, with which a small file can blow up
+            faults.append(Fault(path, node.start_mark.line + 1, ".".join(map(str, where)), "the value itself", "an alias"))
+            return None
+        seen.add(node)
     if isinstance(node, yaml.SequenceNode):
-        return [_walk(loader, item, (*where, i), path, lines, faults) for i, item in enumerate(node.value)]
+        return [_walk(loader, item, (*where, i), path, lines, faults, seen) for i, item in enumerate(node.value)]
     if not isinstance(node, yaml.MappingNode):
         return loader.construct_object(node)  # type: ignore[no-untyped-call]
     mapping: dict[Any, Any] = {}
@@ -165,5 +164,5 @@ def _walk(loader: _Loader, node: yaml.Node, where: _Where, path: Path, lines: di
             faults.append(Fault(path, line, ".".join(map(str, inner)), "each key once", "the key a second time"))
             continue
         lines[inner] = line
-        mapping[key] = _walk(loader, value_node, inner, path, lines, faults)
+        mapping[key] = _walk(loader, value_node, inner, path, lines, faults, seen)
     return mapping

@@ -74,6 +74,7 @@ class HeadModel:
         material: ``(V, 4)`` float32 0..1: lip, inside of the mouth, wet lid margin, ear.
         shade: ``(V, 4)`` float32 0..1: ambient light that reaches the vertex, hair cover, two spare.
         jaw_weights: ``(V,)`` float32 0..1, how far a vertex follows the jaw.
+        mirror: ``(V,)`` int32, the vertex that is each vertex's image in the median plane.
         shapes: the artists' ARKit-named shapes of the skin.
         parts: the other meshes: teeth, tongue, eyeballs.
         regions: the eleven regions and the sub-regions.
@@ -89,6 +90,7 @@ class HeadModel:
     material: Floats
     shade: Floats
     jaw_weights: Floats
+    mirror: Indices
     shapes: dict[str, Shape]
     parts: dict[str, MeshArrays]
     regions: Regions
@@ -104,22 +106,13 @@ class HeadModel:
         """The vector muscles in metres."""
         return place_muscles(self.muscles_file, self.landmarks, self.regions, self.vertices, self.triangles)
 
-    @cached_property
-    def mirror(self) -> Indices:
-        """``(V,)``: the vertex that is each vertex's image in the median plane, found by place."""
-        order = np.lexsort(np.round(self.vertices * [1, 1, 1], 5).T)
-        image = np.lexsort(np.round(self.vertices * [-1, 1, 1], 5).T)
-        result = np.empty(len(order), np.int32)
-        result[image] = order
-        return result
-
     def eye_centre(self, side: str) -> Floats:
         """The centre ``(3,)`` m of the eyeball of side ``l`` or ``r``."""
         return np.array(self.eyes.centre, np.float32) * ([1, 1, 1] if side == SIDES[0] else [-1, 1, 1])
 
 
-def load_model(face: str | Path = DEFAULT_FACE) -> HeadModel:
-    """Read a face by name or from a folder.
+def load_model(face: str | Path = DEFAULT_FACE, muscles: MusclesFile | None = None) -> HeadModel:
+    """Read a face by name or from a folder; with ``muscles``, take these instead of its ``muscles.yaml``.
 
     Raises UnknownNameError for an unknown face and DataError with the faults of the first file that has any.
     """
@@ -137,6 +130,7 @@ def load_model(face: str | Path = DEFAULT_FACE) -> HeadModel:
         material=_fractions(skin, "_MATERIAL"),
         shade=_fractions(skin, "_SHADE"),
         jaw_weights=skin.attributes["_JAW"].astype(np.float32),
+        mirror=skin.attributes["_MIRROR"].astype(np.int32),
         shapes=skin.shapes,
         parts={name: meshes[name] for name in PARTS},
         regions=load_regions(folder / "regions.yaml", len(vertices)),
@@ -145,7 +139,7 @@ def load_model(face: str | Path = DEFAULT_FACE) -> HeadModel:
         jaw=load(folder / "jaw.yaml", JawFile),
         lips=_load_rings(folder / "lips.yaml", LipsFile, len(vertices)),
         eyelids=_load_rings(folder / "eyelids.yaml", EyelidsFile, len(vertices)),
-        muscles_file=read_muscles(folder / "muscles.yaml"),
+        muscles_file=muscles or read_muscles(folder / "muscles.yaml"),
     )
 
 
@@ -182,7 +176,7 @@ def _checked_skin(path: Path, meshes: dict[str, MeshArrays]) -> MeshArrays:
             faults.append(Fault(path, None, f"{name}.POSITION", "finite coordinates", "NaN, infinity or none"))
         elif len(mesh.triangles) and not 0 <= mesh.triangles.min() <= mesh.triangles.max() < len(positions):
             faults.append(Fault(path, None, f"{name}.indices", f"vertices in 0..{len(positions) - 1}", f"{mesh.triangles.max()}"))
-    for attribute in ("_MATERIAL", "_SHADE", "_JAW"):
+    for attribute in ("_MATERIAL", "_SHADE", "_JAW", "_MIRROR"):
         if "skin" in meshes and attribute not in meshes["skin"].attributes:
             faults.append(Fault(path, None, f"skin.{attribute}", "this vertex attribute", "none"))
     if faults:

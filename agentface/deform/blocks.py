@@ -19,7 +19,7 @@ class Blocks(NamedTuple):
     """
 
     home: Floats
-    """``(B, 3, LANES)`` m, rest positions."""
+    """``(B, 3 * LANES)`` m, rest positions: all x, all y, all z."""
     vertex: Indices
     """``(B, LANES)``."""
     first: Indices
@@ -29,7 +29,8 @@ class Blocks(NamedTuple):
     pull: Floats
     """``(P, LANES)`` m, elasticity times reach."""
     fibre: Floats
-    """``(M, 12)``: origin, scaled axis, shift of the angular fall-off, three radial constants, slope and base."""
+    """``(M, 16)``: origin, axis / (1 - edge), -edge / (1 - edge), 1 / Rs, 1 / (Rf - Rs), Rs / (Rf - Rs), the slope and
+    base of the angular fall-off, sin(zone), edge = cos(zone), 1 - edge, Rf."""
 
 
 def pack(rest: Floats, muscles: MuscleSet) -> Blocks:
@@ -45,7 +46,7 @@ def pack(rest: Floats, muscles: MuscleSet) -> Blocks:
     first = np.zeros(count + 1, dtype=np.int32)
     np.cumsum(acts.sum(axis=1), out=first[1:])
     return Blocks(
-        home=np.ascontiguousarray(rest[vertex].transpose(0, 2, 1), dtype=np.float32),
+        home=np.ascontiguousarray(rest[vertex].transpose(0, 2, 1), dtype=np.float32).reshape(count, -1),
         vertex=vertex.astype(np.int32),
         first=first,
         owner=np.nonzero(acts)[1].astype(np.int32),
@@ -103,7 +104,7 @@ def _neighbours(rest: Floats, chosen: npt.NDArray[np.intp]) -> npt.NDArray[np.in
 
 
 def _fibres(muscles: MuscleSet) -> Floats:
-    """``(M, 12)``; see the kernel for the order.
+    """Each muscle's constants, as :attr:`Blocks.fibre` lists them.
 
     The angular fall-off is ``slope * inside + base`` where ``inside = (cos alpha - edge) / (1 - edge)`` is not
     negative; the kernel takes ``inside`` from the scaled axis and the shift.
@@ -120,10 +121,10 @@ def _fibres(muscles: MuscleSet) -> Floats:
         gap,
         muscles.fall_start * gap,
         1.0 - edge if waters else np.ones_like(edge),
+        edge if waters else np.zeros_like(edge),
         np.sin(muscles.zone),
         edge,
         1.0 - edge,
         muscles.fall_finish,
-        edge if waters else np.zeros_like(edge),
     ]
     return np.column_stack(columns).astype(np.float32)

@@ -27,7 +27,7 @@ class FiredRule:
 
 @dataclass(frozen=True, slots=True)
 class MuscleOutcome:
-    """What one mode asks of one muscle: the height of each contraction set, their centroid, the contraction it means."""
+    """What one mode asks of one muscle: the height of each contraction set, their centroid, its contraction."""
 
     muscle: str
     cuts: dict[str, float]

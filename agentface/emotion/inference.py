@@ -11,6 +11,7 @@ from agentface.conventions import Doubles
 from agentface.emotion.explanation import Explanation, explain
 from agentface.emotion.rules import RuleBase
 from agentface.emotion.selector import MODES
+from agentface.emotion.sets import INTENSITY_SETS, SETS
 from agentface.emotion.state import EMOTIONS, EmotionState
 from agentface.parameters import COUNT, MUSCLES, FacePose, indices_of
 
@@ -31,21 +32,21 @@ class Inference:
         self._infer = infer
         modes = rulebase.modes
         rows = [(muscle, rules) for mode in modes for muscle, rules in mode.consequents.items()]
-        self._first_row = np.cumsum([0, *(len(mode.consequents) for mode in modes)], dtype=np.int32)
-        self._muscle_of_row = np.array([MUSCLES.index(muscle) for muscle, _ in rows], np.int32)
-        self._rules = np.zeros((len(rows), 5, 5), np.int8)
+        first_row = np.cumsum([0, *(len(mode.consequents) for mode in modes)], dtype=np.int32)
+        muscle_of_row = np.array([MUSCLES.index(muscle) for muscle, _ in rows], np.int32)
+        tables = np.zeros((len(rows), len(INTENSITY_SETS), len(INTENSITY_SETS)), np.int8)
         for row, (_, rules) in enumerate(rows):
-            self._rules[row] = rules if rules.ndim == 2 else rules[:, None]
-        self._modes = np.zeros((len(EMOTIONS), len(EMOTIONS)), np.int32)
-        for number, mode in enumerate(MODES):
-            self._modes[EMOTIONS.index(mode[0]), EMOTIONS.index(mode[-1])] = number
+            tables[row] = rules if rules.ndim == 2 else rules[:, None]
+        mode_of = np.zeros((len(EMOTIONS), len(EMOTIONS)), np.int32)
+        for number, emotions in enumerate(MODES):
+            mode_of[EMOTIONS.index(emotions[0]), EMOTIONS.index(emotions[-1])] = number
+        self._compiled = (rulebase.gap, mode_of, first_row, muscle_of_row, tables)
         self._places = np.array([(index, row) for row, muscle in enumerate(MUSCLES) for index in indices_of(muscle)])
 
     def contractions(self, state: State) -> Doubles:
         """The contraction of each muscle, ``(len(MUSCLES),)`` float64 in 0..1, in the order of ``MUSCLES``."""
         out = np.empty(len(MUSCLES))
-        intensities = EmotionState.of(state).values
-        self._infer(intensities, self.rulebase.gap, self._modes, self._first_row, self._muscle_of_row, self._rules, out)
+        self._infer(EmotionState.of(state).values, *self._compiled, SETS, out)
         return out
 
     def pose(self, state: State) -> FacePose:

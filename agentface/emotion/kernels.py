@@ -7,16 +7,7 @@ import numpy.typing as npt
 from numba import njit
 
 from agentface.conventions import Doubles, Indices
-from agentface.emotion.sets import (
-    CONTRACTION_CENTRES,
-    CONTRACTION_HALF_WIDTH,
-    INTENSITY_CENTRES,
-    INTENSITY_HALF_WIDTH,
-    UNIVERSE,
-)
-
-_SETS = len(CONTRACTION_CENTRES)
-_LOW, _HIGH = float(CONTRACTION_CENTRES[0]), float(CONTRACTION_CENTRES[-1])
+from agentface.emotion.sets import Sets
 
 
 @njit(cache=True)
@@ -27,6 +18,7 @@ def infer(
     first_row: Indices,
     muscle_of_row: Indices,
     rules: npt.NDArray[np.int8],
+    sets: Sets,
     out: Doubles,
 ) -> None:
     """Write the contraction of every muscle into ``out``.
@@ -38,6 +30,7 @@ def infer(
         first_row: (modes + 1,) int32: where the rows of each mode begin.
         muscle_of_row: (rows,) int32.
         rules: (rows, 5, 5) int8: the contraction set for each intensity set of the mode's first and second emotion.
+        sets: the fuzzy sets.
         out: (muscles,) float64, overwritten.
     """
     out[:] = 0.0
@@ -48,10 +41,10 @@ def infer(
         for second in range(first, count):
             weight = weights[first, second]
             if weight > 0.0:
-                strengths = _strengths(intensities[first], intensities[second], first == second)
+                strengths = _strengths(intensities[first], intensities[second], first == second, sets)
                 mode = modes[first, second]
                 for row in range(first_row[mode], first_row[mode + 1]):
-                    out[muscle_of_row[row]] += weight * _contract(strengths, rules[row])
+                    out[muscle_of_row[row]] += weight * _contract(strengths, rules[row], sets)
     for muscle in range(len(out)):
         out[muscle] = min(1.0, out[muscle])
 
@@ -83,13 +76,13 @@ def _weigh(intensities: Doubles, gap: float, weights: Doubles) -> None:
 
 
 @njit(cache=True)
-def _strengths(first: float, second: float, alone: bool) -> Doubles:
-    count = len(INTENSITY_CENTRES)
+def _strengths(first: float, second: float, alone: bool, sets: Sets) -> Doubles:
+    count = len(sets.intensity_centres)
     strengths = np.zeros((count, count))
     for i in range(count):
-        one = max(0.0, 1.0 - abs(first - INTENSITY_CENTRES[i]) / INTENSITY_HALF_WIDTH)
+        one = max(0.0, 1.0 - abs(first - sets.intensity_centres[i]) / sets.intensity_half_width)
         for j in range(count):
-            two = max(0.0, 1.0 - abs(second - INTENSITY_CENTRES[j]) / INTENSITY_HALF_WIDTH)
+            two = max(0.0, 1.0 - abs(second - sets.intensity_centres[j]) / sets.intensity_half_width)
             strengths[i, j] = min(one, two)
         if alone:
             strengths[i, :] = 0.0
@@ -98,43 +91,45 @@ def _strengths(first: float, second: float, alone: bool) -> Doubles:
 
 
 @njit(cache=True)
-def _contract(strengths: Doubles, rules: npt.NDArray[np.int8]) -> float:
-    cuts = np.zeros(_SETS)
+def _contract(strengths: Doubles, rules: npt.NDArray[np.int8], sets: Sets) -> float:
+    cuts = np.zeros(len(sets.contraction_centres))
     for i in range(strengths.shape[0]):
         for j in range(strengths.shape[1]):
             if strengths[i, j] > cuts[rules[i, j]]:
                 cuts[rules[i, j]] = strengths[i, j]
-    return min(1.0, max(0.0, (_centroid(cuts) - _LOW) / (_HIGH - _LOW)))
+    low, high = sets.contraction_centres[0], sets.contraction_centres[-1]
+    return float(min(1.0, max(0.0, (_centroid(cuts, sets) - low) / (high - low))))
 
 
 @njit(cache=True)
-def _centroid(cuts: Doubles) -> float:
-    extra = np.empty(2 * _SETS)
-    active = np.empty(_SETS, np.int64)
-    sets = 0
-    for number in range(_SETS):
+def _centroid(cuts: Doubles, sets: Sets) -> float:
+    centres, half_width, universe = sets.contraction_centres, sets.contraction_half_width, sets.universe
+    extra = np.empty(2 * len(centres))
+    active = np.empty(len(centres), np.int64)
+    active_count = 0
+    for number in range(len(centres)):
         if cuts[number] > 0.0:
-            reach = CONTRACTION_HALF_WIDTH * (1.0 - cuts[number])
-            extra[2 * sets] = CONTRACTION_CENTRES[number] - reach
-            extra[2 * sets + 1] = CONTRACTION_CENTRES[number] + reach
-            active[sets] = number
-            sets += 1
-    if sets == 1:
-        return CONTRACTION_CENTRES[active[0]]
-    found = np.sort(extra[: 2 * sets])
+            reach = half_width * (1.0 - cuts[number])
+            extra[2 * active_count] = centres[number] - reach
+            extra[2 * active_count + 1] = centres[number] + reach
+            active[active_count] = number
+            active_count += 1
+    if active_count == 1:
+        return float(centres[active[0]])
+    found = np.sort(extra[: 2 * active_count])
     area, moment, left, low = 0.0, 0.0, 0.0, 0.0
     grid, cut = 0, 0
-    while grid < len(UNIVERSE) or cut < len(found):
-        if cut == len(found) or (grid < len(UNIVERSE) and UNIVERSE[grid] <= found[cut]):
-            right = UNIVERSE[grid]
+    while grid < len(universe) or cut < len(found):
+        if cut == len(found) or (grid < len(universe) and universe[grid] <= found[cut]):
+            right = universe[grid]
             grid += 1
         else:
             right = found[cut]
             cut += 1
         high = 0.0
-        for place in range(sets):
+        for place in range(active_count):
             number = active[place]
-            member = 1.0 - abs(right - CONTRACTION_CENTRES[number]) / CONTRACTION_HALF_WIDTH
+            member = 1.0 - abs(right - centres[number]) / half_width
             high = max(high, min(cuts[number], member))
         width = right - left
         area += width * (low + high) / 2

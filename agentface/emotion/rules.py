@@ -12,7 +12,7 @@ import numpy.typing as npt
 from agentface.emotion.selector import MODES
 from agentface.emotion.sets import CONTRACTION_SETS
 from agentface.emotion.state import EMOTIONS
-from agentface.emotion.tables import REST, STRONGER, BlendsFile, BlendTable, Capped, load_blends, load_emotions, pair_of
+from agentface.emotion.tables import REST, STRONGER, BlendsFile, Contribution, load_blends, load_emotions, pair_of
 from agentface.errors import DataError, Fault
 from agentface.parameters import MUSCLES
 from agentface.resources import data_folder
@@ -92,26 +92,16 @@ def _blends(file: BlendsFile, rows: Mapping[str, _Rows]) -> list[Mode]:
         blend = blends[pair]
         consequents = {}
         for muscle in MUSCLES:
-            rules = _consequents(
-                _donor(blend, muscle, part_of[muscle]), pair, [rows[emotion].get(muscle, _AT_REST) for emotion in pair]
-            )
+            given = blend.exceptions.get(muscle, getattr(blend, part_of[muscle]))
+            rules = _consequents(given, pair, [rows[emotion].get(muscle, _AT_REST) for emotion in pair])
             if rules.any():
                 consequents[muscle] = rules
         modes.append(Mode(pair, blend.description, blend.source, consequents))
     return modes
 
 
-def _donor(blend: BlendTable, muscle: str, part: str) -> Capped | str:
-    donor: str = getattr(blend, part)
-    return blend.exceptions.get(muscle, donor)
-
-
-def _consequents(donor: Capped | str, pair: tuple[str, ...], rows: list[_Row]) -> _Row:
-    if isinstance(donor, Capped):
-        return np.minimum(_consequents(donor.donor, pair, rows), np.int8(CONTRACTION_SETS.index(donor.at_most)))
+def _consequents(given: Contribution, pair: tuple[str, ...], rows: list[_Row]) -> _Row:
     first, second = np.broadcast_arrays(rows[0][:, None], rows[1][None, :])
-    if donor == STRONGER:
-        return np.maximum(first, second)
-    if donor == REST:
-        return np.zeros_like(first)
-    return np.array(first if donor == pair[0] else second)
+    followed = {pair[0]: first, pair[1]: second, STRONGER: np.maximum(first, second), REST: np.zeros_like(first)}
+    consequents: _Row = np.minimum(followed[given.donor], np.int8(CONTRACTION_SETS.index(given.at_most)))
+    return consequents

@@ -1,7 +1,7 @@
 """Expression mode selection: how much of each single expression and of each blend of two a state shows.
 
-Bui, Heylen and Nijholt choose one mode: a single expression when one emotion leads by more than about 0.2,
-else a blend of the two strongest. A switch would make the face jump, so the choice is fuzzy here.
+Bui, Heylen, Poel and Nijholt (2001) select one mode, a single expression or a blend of the two strongest emotions.
+A switch would make the face jump, so the choice is fuzzy here; formula and gap are ours.
 An emotion e takes part, beside the strongest one, to the degree
 
     r(e) = max(0, 1 - (top - x(e)) / min(2 gap, top)),    top = max x
@@ -44,7 +44,7 @@ def mode_weights(intensities: Doubles, gap: float) -> dict[tuple[str, ...], floa
     upper = 1.0
     for lower in sorted({*degrees.tolist(), 0.0} - {1.0}, reverse=True):
         cut = tuple(emotion for emotion, degree in zip(EMOTIONS, degrees, strict=True) if degree > lower)
-        called = list(combinations(cut, 2)) or [cut]
+        called: list[tuple[str, ...]] = [*combinations(cut, 2)] or [cut]
         for mode in called if cut else ():
             weights[mode] += (upper - lower) / len(called)
         upper = lower

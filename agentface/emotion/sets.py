@@ -8,7 +8,7 @@ centroids lie between the centres of VerySmall and VeryBig; :func:`rescale` stre
 
 from __future__ import annotations
 
-from typing import Literal, TypeAlias, get_args
+from typing import Literal, NamedTuple, TypeAlias, get_args
 
 import numpy as np
 
@@ -25,6 +25,19 @@ CONTRACTION_CENTRES: Doubles = np.array([0.25, 0.375, 0.5, 0.625, 0.75])
 CONTRACTION_HALF_WIDTH = 0.25
 UNIVERSE: Doubles = np.linspace(0.0, 1.0, 33)
 """Where aggregated sets are sampled, beside the points where a rule's strength cuts its set."""
+
+
+class Sets(NamedTuple):
+    """All fuzzy sets as the kernel takes them; a kernel that read them as globals would be cached with old ones."""
+
+    intensity_centres: Doubles
+    intensity_half_width: float
+    contraction_centres: Doubles
+    contraction_half_width: float
+    universe: Doubles
+
+
+SETS = Sets(INTENSITY_CENTRES, INTENSITY_HALF_WIDTH, CONTRACTION_CENTRES, CONTRACTION_HALF_WIDTH, UNIVERSE)
 
 
 def intensity_membership(intensity: float) -> Doubles:

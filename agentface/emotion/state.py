@@ -41,6 +41,7 @@ class EmotionState(Mapping[str, float]):
     """
 
     __slots__ = ("values",)
+    values: Doubles  # type: ignore[assignment]  # an array, where other mappings have a method
 
     def __init__(self, values: Any = None) -> None:
         given = np.zeros(len(EMOTIONS)) if values is None else np.asarray(values)
@@ -60,6 +61,8 @@ class EmotionState(Mapping[str, float]):
         """
         if isinstance(intensities, EmotionState) and not named:
             return intensities
+        if not isinstance(intensities, Mapping | None):
+            raise InvalidValueError("EmotionState.of", "a mapping from emotions to intensities", intensities)
         values: dict[str, float] = {}
         for name, value in (*(intensities or {}).items(), *named.items()):
             emotion = canonical(name)
@@ -74,9 +77,6 @@ class EmotionState(Mapping[str, float]):
 
     def __getitem__(self, name: str) -> float:
         return float(self.values[EMOTIONS.index(canonical(name))])
-
-    def __contains__(self, name: object) -> bool:
-        return isinstance(name, str) and name in EMOTIONS
 
     def __iter__(self) -> Iterator[str]:
         return iter(EMOTIONS)

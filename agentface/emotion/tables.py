@@ -1,7 +1,7 @@
 """The two rule files as they are written: their models, and every fault of both at once.
 
-``emotions.yaml`` gives each emotion a row a muscle, of five contraction sets; ``blends.yaml`` says for each pair of emotions
-which of the two has the upper face, the lids and the lower face.
+``emotions.yaml`` gives each emotion a row a muscle, of five contraction sets; ``blends.yaml`` says for each pair
+of emotions which of the two has the upper face, the lids and the lower face.
 """
 
 from __future__ import annotations
@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections import Counter
 from itertools import combinations, pairwise
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any
 
 from pydantic import AfterValidator, BeforeValidator, Field
 
@@ -20,7 +20,7 @@ from agentface.errors import DataError, UnknownNameError, did_you_mean
 from agentface.parameters import MUSCLES
 
 STRONGER, REST = "stronger", "rest"
-_GROUPS = ("upper", "lids", "lower")
+_PARTS = ("upper", "lids", "lower")
 
 
 def _muscle(name: str) -> str:
@@ -40,10 +40,17 @@ def _row(row: list[str]) -> list[str]:
     if row[0] != CONTRACTION_SETS[0]:
         raise ValueError(f"expected {CONTRACTION_SETS[0]} at {INTENSITY_SETS[0]}: no emotion, no contraction")
     for column, (low, high) in enumerate(pairwise(row)):
-        if abs(CONTRACTION_SETS.index(high) - CONTRACTION_SETS.index(low)) > 1:
+        # Steps this small keep every ramp below 0.05 for 0.01 in intensity, the selector included.
+        if abs(CONTRACTION_SETS.index(high) - CONTRACTION_SETS.index(low)) > (2 if column == 0 else 1):
             step = f"{low} at {INTENSITY_SETS[column]} and {high} at {INTENSITY_SETS[column + 1]}"
-            raise ValueError(f"expected neighbours at most one set apart, so that the face never jumps; not {step}")
+            raise ValueError(
+                f"expected neighbours one set apart (the first step: two), lest the face jumps; not {step}"
+            )
     return row
+
+
+def _contribution(value: Any) -> Any:
+    return {"from": value} if isinstance(value, str) else value
 
 
 MuscleName = Annotated[str, AfterValidator(_muscle)]
@@ -79,13 +86,6 @@ class EmotionsFile(Table):
     emotions: Emotions
 
 
-class Capped(Table):
-    """A contribution held down to a contraction set."""
-
-    donor: Donor = Field(alias="from")
-    at_most: ContractionSet
-
-
 class Selector(Table):
     """``gap``: by how much an emotion trails the strongest when single expression and blend weigh the same."""
 
@@ -100,15 +100,28 @@ class Groups(Table):
     lower: list[MuscleName]
 
 
+class Contribution(Table):
+    """Whose rows some muscles follow, and the contraction set beyond which they do not go.
+
+    In the file, the name of the donor alone is enough.
+    """
+
+    donor: Donor = Field(alias="from")
+    at_most: ContractionSet = "VeryBig"
+
+
+Given = Annotated[Contribution, BeforeValidator(_contribution)]
+
+
 class BlendTable(Table):
     """The blend of two emotions: who gives each part of the face, and which muscles differ from that."""
 
     description: str
     source: str
-    upper: Donor
-    lids: Donor
-    lower: Donor
-    exceptions: dict[MuscleName, Donor | Capped] = Field(default={}, alias="except")
+    upper: Given
+    lids: Given
+    lower: Given
+    exceptions: dict[MuscleName, Given] = Field(default={}, alias="except")
 
 
 class BlendsFile(Table):
@@ -138,9 +151,9 @@ def load_blends(path: Path) -> BlendsFile:
     return _checked(document, file)
 
 
-def pair_of(key: object) -> tuple[str, ...] | None:
-    """The two emotions of a blend's name, ``fear+sadness``, in the order of ``EMOTIONS``; None if it is no such name."""
-    parts = key.split("+") if isinstance(key, str) else []
+def pair_of(key: str) -> tuple[str, ...] | None:
+    """The two emotions that ``fear+sadness`` names, in the order of ``EMOTIONS``; None if it names no pair."""
+    parts = key.split("+")
     try:
         named = {canonical(part) for part in parts}
     except UnknownNameError:
@@ -152,7 +165,7 @@ def _check_groups(document: Document) -> None:
     groups = _at(document.data, "groups")
     if not isinstance(groups, dict):
         return
-    rows = {group: row for group in _GROUPS if isinstance(row := groups.get(group), list)}
+    rows = {group: row for group in _PARTS if isinstance(row := groups.get(group), list)}
     named = Counter(muscle for row in rows.values() for muscle in row if isinstance(muscle, str))
     for group, row in rows.items():
         for place, muscle in enumerate(row):
@@ -169,6 +182,8 @@ def _check_pairs(document: Document) -> None:
         return
     seen: set[tuple[str, ...]] = set()
     for key, blend in blends.items():
+        if not isinstance(key, str):
+            continue
         pair = pair_of(key)
         if pair is None:
             document.fault(("blends", key), "two emotions joined by +", repr(key), f"emotions: {', '.join(EMOTIONS)}")
@@ -184,10 +199,12 @@ def _check_pairs(document: Document) -> None:
 
 def _check_donors(document: Document, key: str, pair: tuple[str, ...], blend: Any) -> None:
     exceptions = _at(blend, "except")
-    named = {(group,): _at(blend, group) for group in _GROUPS}
-    for muscle, donor in exceptions.items() if isinstance(exceptions, dict) else ():
-        named["except", muscle] = _at(donor, "from") if isinstance(donor, dict) else donor
-    for where, donor in named.items():
+    given: dict[tuple[str, ...], Any] = {(part,): _at(blend, part) for part in _PARTS}
+    given |= {
+        ("except", muscle): value for muscle, value in (exceptions if isinstance(exceptions, dict) else {}).items()
+    }
+    for where, value in given.items():
+        donor = _at(value, "from") if isinstance(value, dict) else value
         try:
             foreign = isinstance(donor, str) and donor not in (STRONGER, REST) and canonical(donor) not in pair
         except UnknownNameError:

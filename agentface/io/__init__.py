@@ -1,0 +1,1 @@
+"""The ways in and out: files, videos, network protocols."""

@@ -1,0 +1,1 @@
+"""How the face moves between one state and the next: envelopes, channels and their mixer."""

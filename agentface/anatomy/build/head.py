@@ -59,7 +59,7 @@ class HeadTopology:
         sockets = {side: quads[island == number] for side, number in _SOCKETS.items()}
         self.loops: Loops = find_loops(quads[island == _FACE], quads[island == _BAG], sockets)
         self.bag_vertices = np.setdiff1d(quads[island == _BAG], self.loops.lips[0])
-        self.skin = Skin(self.quads, _levels(mesh.positions[self.quads], island[chosen]), mesh.positions, mesh.mirror)
+        self.skin = Skin(self.quads, self._levels(island[chosen]), mesh.positions, mesh.mirror)
         self._partition()
         self._thin()
         self._partition()
@@ -67,6 +67,21 @@ class HeadTopology:
         self.skin.reorder(order)
         self.region, self.sub, self.points = self.region[order], self.sub[order], self.points[order]
         self.regions, self.sub_regions = ranges(self.region, self.sub)
+
+    def _levels(self, island: Indices) -> Indices:
+        """How often to subdivide each quad: finest on the forehead, where furrows are narrow; never across a ring."""
+        corners = self.mesh.positions[self.quads]
+        middle = corners.mean(1)
+        x, y, z = np.abs(middle[:, 0]), middle[:, 1], middle[:, 2]
+        wanted = np.full(len(corners), np.float64(1e3))
+        wanted[(y > 6.3) & (y < 7.15) & (x > 0.12) & (x < 0.50) & (z > 1.0)] = 0.040
+        wanted[(y > 7.12) & (y < 7.40) & (x > 0.43) & (x < 0.64) & (z > 0.85)] = 0.030
+        wanted[(y > 7.18) & (y <= 7.46) & (x < 0.14) & (z > 1.2)] = 0.026
+        wanted[(y > 7.44) & (y < 7.92) & (z > 0.92) & (x < 0.58)] = 0.0195
+        whole = [*self.loops.lips[:8], *(ring for rings in self.loops.lids.values() for ring in rings[:8])]
+        wanted[(island == _BAG) | np.isin(self.quads, np.concatenate(whole)).any(1)] = 1e3
+        edge = np.linalg.norm(corners - np.roll(corners, 1, 1), axis=2).mean(1)
+        return np.clip(np.round(np.log2(edge / wanted)), 0, 2).astype(np.int32)
 
     def _partition(self) -> None:
         mesh, skin = self.mesh, self.skin
@@ -137,20 +152,6 @@ class HeadTopology:
         return np.clip(np.hstack([*(self.skin.place(field) for field in (lip, mouth, wet)), ear]), 0, 1)
 
 
-def _levels(corners: Doubles, island: Indices) -> Indices:
-    """How often to subdivide quads with corners ``(Q, 4, 3)``: finest on the forehead, where furrows are narrow."""
-    middle = corners.mean(1)
-    x, y, z = np.abs(middle[:, 0]), middle[:, 1], middle[:, 2]
-    wanted = np.full(len(corners), np.float64(1e3))
-    wanted[(y > 6.3) & (y < 7.15) & (x > 0.12) & (x < 0.50) & (z > 1.0)] = 0.040
-    wanted[(y > 7.12) & (y < 7.40) & (x > 0.43) & (x < 0.64) & (z > 0.85)] = 0.030
-    wanted[(y > 7.18) & (y <= 7.46) & (x < 0.14) & (z > 1.2)] = 0.026
-    wanted[(y > 7.44) & (y < 7.92) & (z > 0.92) & (x < 0.58)] = 0.0195
-    wanted[island == _BAG] = 1e3
-    edge = np.linalg.norm(corners - np.roll(corners, 1, 1), axis=2).mean(1)
-    return np.clip(np.round(np.log2(edge / wanted)), 0, 2).astype(np.int32)
-
-
 @dataclass(frozen=True, slots=True)
 class Head:
     """One person's head on the shared topology, in metres: meshes for ``head.glb`` and what the tables need."""
@@ -180,6 +181,7 @@ def build_head(topology: HeadTopology, recipe: Recipe) -> Head:
                 "_MATERIAL": _bytes(topology.material),
                 "_SHADE": _bytes(np.tile([1.0, 0, 0, 0], (len(skin.kept), 1))),
                 "_JAW": jaw.astype(np.float32),
+                "_MIRROR": skin.mirror.astype(np.float32),
             },
             {name: _sparse(offsets) for name, offsets in shapes.items()},
         )

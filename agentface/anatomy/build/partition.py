@@ -48,9 +48,10 @@ def find_loops(face: Indices, bag: Indices, sockets: dict[str, Indices]) -> Loop
 
 def halves(ring: list[int], positions: Doubles) -> tuple[list[int], list[int]]:
     """A ring cut at its two lateral ends: the upper half and the lower half, both from +x to -x, ends included."""
-    first = max(range(len(ring)), key=lambda i: positions[ring[i], 0])
+    # of two ends that are equally far the higher one, so that mirrored rings are cut at mirrored vertices
+    first = max(range(len(ring)), key=lambda i: tuple(positions[ring[i], :2]))
     turned = ring[first:] + ring[:first]
-    last = min(range(len(turned)), key=lambda i: positions[turned[i], 0])
+    last = max(range(len(turned)), key=lambda i: tuple(positions[turned[i], :2] * [-1, 1]))
     one, other = turned[: last + 1], [turned[0], *turned[:last - 1:-1]]
     return (one, other) if positions[one, 1].mean() > positions[other, 1].mean() else (other, one)
 
@@ -66,7 +67,7 @@ def base_labels(positions: Doubles, loops: Loops) -> dict[str, Doubles]:
     lips, lids, lid_above = np.zeros(count), np.zeros(count), np.sign(y - 7.29)
     for depth, ring in [*enumerate(loops.lips), *((-1 - i, ring) for i, ring in enumerate(loops.mouth))]:
         upper, lower = halves(ring, positions)
-        above[upper], above[lower] = 1.0, -1.0  # the corners come last: they belong to the lower lip
+        above[lower], above[upper] = -1.0, 1.0  # the corners, in both halves, count as the upper lip's
         lips[ring] = -_MUCOSA - 1 <= depth <= _VERMILION
     for all_rings in loops.lids.values():
         for depth, ring in enumerate(all_rings):
@@ -90,7 +91,7 @@ def partition(points: Doubles, labels: dict[str, Doubles], bag: Doubles) -> tupl
     half[(lids > 0.5) & (lid_above > 0)] = HALF_REGIONS.index("upper_eyelid")
     half[(lids > 0.5) & (lid_above <= 0)] = HALF_REGIONS.index("lower_eyelid")
     rest = (z < 0.70) | (y > 8.06) | (y < 6.10) | ((x > 0.64) & (z < 0.78)) | (z < 0.80) & (y < 6.25)
-    rest |= (bag[:, 0] > 0.75) & (lips < 0.25) & (z < 1.38)
+    rest |= (bag[:, 0] > 0.75) & (z < 1.05)
     right = points[:, 0] < 1e-6
     region = np.where(rest, REGIONS.index(REST), half + np.where(right, 0, len(HALF_REGIONS)))
     sub = np.zeros(len(points), np.int32)

@@ -1,0 +1,122 @@
+"""What the vector muscles of one face cost a frame, beside what a plainer way and a blendshape rig cost."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from statistics import median
+from typing import Any, Protocol
+
+import numpy as np
+
+from agentface.conventions import Bytes, Doubles, Floats, Indices
+from agentface.deform.combine import STEP, Combiner
+from agentface.deform.normals import NormalField
+from agentface.deform.vector_muscle import MuscleSet
+
+BLENDSHAPES = 52
+"""The shapes of an ARKit rig."""
+ACTIVE = 8
+"""Muscles of a common expression."""
+
+
+class Muscled(Protocol):
+    """What the benchmark needs of a face."""
+
+    @property
+    def vertices(self) -> Floats: ...  # noqa: D102
+
+    @property
+    def triangles(self) -> Indices: ...  # noqa: D102
+
+    @property
+    def muscles(self) -> MuscleSet: ...  # noqa: D102
+
+    @property
+    def region_of(self) -> Bytes: ...  # noqa: D102
+
+    @property
+    def muscle_regions(self) -> Any: ...  # noqa: D102
+
+
+def run(model: Muscled | None = None, rounds: int = 200) -> dict[str, Any]:
+    """Medians over interleaved rounds, in microseconds a frame, and their ratios.
+
+    All muscles that act contract fully, which takes five steps: the dearest frame. ``loop_us`` is a compiled loop
+    over every muscle and vertex in double precision, ``cutoff_us`` the same with the paper's test of the region
+    first, ``gemv_us`` the weighted sum of 52 blendshapes of the same mesh as one float32 product of a matrix and a
+    vector, in the faster of the two storage orders, ``copy_us`` a copy of the vertices. The muscles run on one
+    thread; for a fair product set ``OPENBLAS_NUM_THREADS=1`` before the program starts.
+    """
+    if model is None:
+        from agentface.anatomy.model import load_model
+
+        model = load_model()
+    from agentface.bench import plain
+
+    count = len(model.muscles)
+    rest = model.vertices
+    out = np.empty_like(rest)
+    draw = np.random.default_rng(2)
+    some = np.zeros(count)
+    some[draw.permutation(count)[:ACTIVE]] = 1.0
+    combiner = Combiner(rest, model.muscles)
+    constants = plain.constants(model.muscles)
+    mask = np.asarray(model.muscle_regions, dtype=np.int64)
+    work: tuple[Doubles, Doubles] = (np.empty(rest.shape), np.empty(rest.shape))
+
+    def loops(levels: Doubles, masks: Any) -> Callable[[], Any]:
+        return lambda: plain.contract(rest, *work, constants, levels, STEP, model.region_of, masks)
+
+    every = np.full(count, -1, dtype=np.int64)
+    tasks: dict[str, Callable[[], Any]] = _blendshapes(rest.size, draw)
+    tasks["copy"] = lambda: np.copyto(out, rest)
+    field = NormalField(model.triangles, len(rest))
+    tasks["normals"] = lambda: field.compute(rest, out)
+    for name, levels in (("active_8", some), ("active_all", np.ones(count))):
+        tasks[f"{name}.ours"] = lambda levels=levels: combiner.apply(levels, out)
+        tasks[f"{name}.loop"] = loops(levels, every)
+        tasks[f"{name}.cutoff"] = loops(levels, mask)
+    times = _interleave(tasks, rounds)
+    report: dict[str, Any] = {"vertices": len(rest), "muscles": count, "normals_us": times["normals"]}
+    for name in ("active_8", "active_all"):
+        report[name] = _compare(name, times)
+    return report
+
+
+def _compare(name: str, times: dict[str, float]) -> dict[str, float]:
+    ours, loop, cutoff = (times[f"{name}.{way}"] for way in ("ours", "loop", "cutoff"))
+    gemv = min(times["gemv_rows"], times["gemv_columns"])
+    return {
+        "ours_us": ours,
+        "loop_us": loop,
+        "cutoff_us": cutoff,
+        "gemv_us": gemv,
+        "copy_us": times["copy"],
+        "ours_to_gemv_ratio": ours / gemv,
+        "loop_to_ours_ratio": loop / ours,
+        "cutoff_to_ours_ratio": cutoff / ours,
+    }
+
+
+def _blendshapes(size: int, draw: np.random.Generator) -> dict[str, Callable[[], Any]]:
+    basis = draw.random((BLENDSHAPES, size), dtype=np.float32)
+    turned = np.ascontiguousarray(basis.T)
+    weights = draw.random(BLENDSHAPES, dtype=np.float32)
+    out = np.empty(size, dtype=np.float32)
+    return {
+        "gemv_rows": lambda: np.dot(weights, basis, out=out),
+        "gemv_columns": lambda: np.dot(turned, weights, out=out),
+    }
+
+
+def _interleave(tasks: dict[str, Callable[[], Any]], rounds: int) -> dict[str, float]:
+    """The median time of each task in microseconds, all tasks once a round, after one round to compile them."""
+    times: dict[str, list[float]] = {name: [] for name in tasks}
+    for turn in range(rounds + 1):
+        for name, task in tasks.items():
+            start = time.perf_counter()
+            task()
+            if turn:
+                times[name].append(1e6 * (time.perf_counter() - start))
+    return {name: median(values) for name, values in times.items()}

@@ -1,0 +1,60 @@
+"""``rules/action_units.yaml``: which muscles and which artists' shapes make an action unit."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Annotated
+
+from pydantic import Field
+
+from agentface.anatomy.model import HeadModel
+from agentface.config import Document, Table
+from agentface.conventions import Floats
+from agentface.parameters import MUSCLES
+from agentface.resources import rules_file
+
+_Contraction = Annotated[float, Field(gt=0, le=1)]
+
+
+class ActionUnitRow(Table):
+    """One action unit."""
+
+    name: str
+    muscles: Annotated[dict[str, _Contraction], Field(min_length=1)]
+    shapes: Annotated[list[str], Field(min_length=1)]
+
+
+class ActionUnitsFile(Table):
+    """``action_units.yaml``: rows by the number of the action unit."""
+
+    action_units: Annotated[dict[int, ActionUnitRow], Field(min_length=1)]
+
+
+@dataclass(frozen=True, slots=True)
+class ActionUnit:
+    """An action unit: FACS number, FACS name, contractions of muscles without side, names of the artists' shapes."""
+
+    number: int
+    name: str
+    muscles: dict[str, float]
+    shapes: tuple[str, ...]
+
+    def shape(self, model: HeadModel) -> Floats:
+        """``(V, 3)`` m: the sum of the artists' shapes on a face."""
+        count = len(model.vertices)
+        return sum((model.shapes[name].dense(count) for name in self.shapes), 0 * model.vertices)
+
+
+def load_action_units() -> dict[int, ActionUnit]:
+    """The table that comes with agentface; raises DataError with all faults."""
+    document = Document(rules_file("action_units.yaml"))
+    file = document.parse(ActionUnitsFile)
+    for number, row in file.action_units.items():
+        for muscle in row.muscles:
+            if muscle not in MUSCLES:
+                document.fault(("action_units", number, "muscles", muscle), "a muscle without side", muscle)
+    document.check()
+    return {
+        number: ActionUnit(number, row.name, dict(row.muscles), tuple(row.shapes))
+        for number, row in file.action_units.items()
+    }

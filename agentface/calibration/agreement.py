@@ -1,0 +1,68 @@
+"""How well a displacement field of muscles agrees with the artists' shape of the same action unit."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from agentface.anatomy.model import HeadModel
+from agentface.anatomy.regions import REGIONS
+from agentface.calibration.action_units import ActionUnit
+from agentface.conventions import Floats
+from agentface.deform.pipeline import GeometricDeformer
+from agentface.parameters import FacePose
+
+PART_OF_PEAK = 0.25
+
+
+@dataclass(frozen=True, slots=True)
+class Agreement:
+    """Muscles against artists, over the vertices where the artists' shape moves more than a quarter of its maximum.
+
+    Attributes:
+        cosine: mean cosine between the two displacements; a vertex that the muscles leave alone counts 0.
+        covered: part of these vertices that the muscles move at least a tenth of the artists' maximum.
+        peak_ratio: the muscles' largest displacement over the artists'.
+        peak_mm: the artists' largest displacement.
+        region, artists_region: the paper's region, without side, where each is largest.
+    """
+
+    cosine: float
+    covered: float
+    peak_ratio: float
+    peak_mm: float
+    region: str
+    artists_region: str
+
+
+def agreement(model: HeadModel, muscles: Floats, artists: Floats) -> Agreement:
+    """Compare two displacement fields ``(V, 3)`` in metres."""
+    moved, wanted = np.linalg.norm(muscles, axis=1), np.linalg.norm(artists, axis=1)
+    peak = float(wanted.max())
+    chosen = wanted > PART_OF_PEAK * peak
+    dots = (muscles[chosen] * artists[chosen]).sum(1)
+    cosines = dots / np.maximum(moved[chosen] * wanted[chosen], 1e-12)
+    return Agreement(
+        cosine=float(np.where(moved[chosen] > 1e-7, cosines, 0.0).mean()),
+        covered=float((moved[chosen] > 0.1 * peak).mean()),
+        peak_ratio=float(moved.max()) / peak,
+        peak_mm=1e3 * peak,
+        region=_region(model, int(moved.argmax())),
+        artists_region=_region(model, int(wanted.argmax())),
+    )
+
+
+def measure(model: HeadModel, units: dict[int, ActionUnit]) -> dict[int, Agreement]:
+    """The agreement of every action unit in ``units`` on a face, with the whole pipeline."""
+    deformer = GeometricDeformer(model)
+    rest = model.vertices
+    result = {}
+    for number, unit in units.items():
+        moved = deformer.deform(FacePose.of(**unit.muscles)).vertices - rest
+        result[number] = agreement(model, moved, unit.shape(model))
+    return result
+
+
+def _region(model: HeadModel, vertex: int) -> str:
+    return REGIONS[model.regions.region_of[vertex]].removesuffix("_l").removesuffix("_r")

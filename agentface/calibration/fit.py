@@ -1,0 +1,151 @@
+"""Fits muscles to the artists' shapes by least squares from many starts, within anatomical bounds.
+
+The bounds are relative to ``regions/anatomy.yaml``, the anatomist's table: bone end and skin end may move by
+``_ORIGIN_WITHIN`` and ``_INSERTION_WITHIN`` eye separations, so a muscle stays the muscle it is named after.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from agentface.anatomy.model import HeadModel
+from agentface.anatomy.muscles import Anchor, MuscleRow, MusclesFile, anchor_point, place_muscles
+from agentface.calibration.action_units import ActionUnit
+from agentface.calibration.field import ROWS, displacements
+from agentface.conventions import SIDES, Doubles
+
+_ORIGIN_WITHIN = 0.40
+_INSERTION_WITHIN = 0.25
+_LOW = (*[-_ORIGIN_WITHIN] * 3, *[-_INSERTION_WITHIN] * 3, 12.0, 0.15, 0.12, 0.01)
+_HIGH = (*[_ORIGIN_WITHIN] * 3, *[_INSERTION_WITHIN] * 3, 75.0, 1.8, 1.5, 0.60)
+_DIRECTION_WEIGHT = 0.55
+_OUTSIDE_WEIGHT = 0.8
+_PEAK_WEIGHT = 1.5  # the largest displacements are what a stranger sees
+
+Progress = Callable[[str], None]
+
+
+@dataclass(frozen=True, slots=True)
+class Group:
+    """Action units that are fitted together because they share muscles."""
+
+    units: tuple[ActionUnit, ...]
+    muscles: tuple[str, ...]
+
+
+def groups(units: Sequence[ActionUnit]) -> list[Group]:
+    """The action units grouped so that no muscle is in two groups."""
+    result: list[Group] = []
+    for unit in units:
+        touching = [group for group in result if set(group.muscles) & unit.muscles.keys()]
+        result = [group for group in result if group not in touching]
+        members = (*(member for group in touching for member in group.units), unit)
+        names = dict.fromkeys(name for member in members for name in member.muscles)
+        result.append(Group(members, tuple(names)))
+    return result
+
+
+class Fitter:
+    """The residuals of one group on one face; symmetric, so only the left half of the face counts."""
+
+    def __init__(self, model: HeadModel, anatomy: MusclesFile, group: Group) -> None:
+        self.model, self.anatomy, self.group = model, anatomy, group
+        self.unit = model.landmarks.eye_separation
+        placed = place_muscles(anatomy, model.landmarks, model.regions, model.vertices, model.triangles)
+        names = [f"{name}_{side}" for name in group.muscles for side in SIDES]
+        self._reach_all = np.stack([placed.reach[placed.index(name)] for name in names]).astype(np.float64)
+        half = np.flatnonzero((model.vertices[:, 0] > -1e-6) & (self._touched() > 0))
+        self._rest = model.vertices[half].astype(np.float64)
+        self._reach = np.ascontiguousarray(self._reach_all[:, half])
+        self._targets = [unit.shape(model)[half].astype(np.float64) for unit in group.units]
+        self._contractions = [
+            np.array([unit.muscles.get(name, 0.0) for name in group.muscles for _ in SIDES]) for unit in group.units
+        ]
+
+    def _touched(self) -> Doubles:
+        shapes = sum(np.abs(unit.shape(self.model)).max(1) for unit in self.group.units)
+        return np.asarray(self._reach_all.max(0) + 1e3 * shapes)
+
+    def start(self) -> Doubles:
+        """The anatomist's values, ``(M, ROWS)`` flattened: offsets zero, then zone, Rs, Rf - Rs, k."""
+        rows = []
+        for name in self.group.muscles:
+            row = self.anatomy.muscles[name]
+            rows.append([0.0] * 6 + [row.zone_deg, row.fall_start, row.fall_finish - row.fall_start, row.elasticity])
+        return np.clip(np.array(rows), _LOW, _HIGH).ravel()
+
+    def bounds(self) -> tuple[Doubles, Doubles]:
+        """The lowest and the highest values."""
+        count = len(self.group.muscles)
+        return np.tile(_LOW, count), np.tile(_HIGH, count)
+
+    def rows(self, values: Doubles) -> Doubles:
+        """The muscles of both sides ``(2 M, ROWS)`` in metres."""
+        rows = np.empty((2 * len(self.group.muscles), ROWS))
+        for i, (name, value) in enumerate(zip(self.group.muscles, values.reshape(-1, ROWS), strict=True)):
+            row = self.anatomy.muscles[name]
+            for j, side in enumerate(SIDES):
+                flip = np.array([1.0 if side == SIDES[0] else -1.0, 1.0, 1.0]) * self.unit
+                rows[2 * i + j, :3] = anchor_point(row.origin, side, self.model.landmarks) + flip * value[:3]
+                rows[2 * i + j, 3:6] = anchor_point(row.insertion, side, self.model.landmarks) + flip * value[3:6]
+                rows[2 * i + j, 6] = np.cos(np.radians(value[6]))
+                rows[2 * i + j, 7:] = self.unit * np.array([value[7], value[7] + value[8], value[9]])
+        return rows
+
+    def residuals(self, values: Doubles) -> Doubles:
+        """Displacements and directions against the artists', over the larger of the shape; mild pull to the anatomy."""
+        rows, parts = self.rows(values), []
+        for target, contraction in zip(self._targets, self._contractions, strict=True):
+            moved = displacements(self._rest, rows, self._reach, contraction)
+            size = np.linalg.norm(target, axis=1, keepdims=True)
+            peak = size.max()
+            inside = size[:, 0] > 0.25 * peak
+            weight = np.where(inside, 1.0 + _PEAK_WEIGHT * (size[:, 0] / peak) ** 4, _OUTSIDE_WEIGHT)
+            scale = weight[:, None] / (peak * np.sqrt(inside.sum()))
+            parts.append(((moved - target) * scale).ravel())
+            unit_moved = moved[inside] / (np.linalg.norm(moved[inside], axis=1, keepdims=True) + 0.04 * peak)
+            parts.append((_DIRECTION_WEIGHT / np.sqrt(inside.sum()) * (unit_moved - target[inside] / size[inside])).ravel())
+        pull = (values - self.start()).reshape(-1, ROWS)[:, :6] * 0.02
+        return np.concatenate([*parts, pull.ravel()])
+
+    def solve(self, starts: int, rng: np.random.Generator, progress: Progress) -> tuple[Doubles, float]:
+        """The best values found from ``starts`` starts, the first at the anatomist's values, and their cost."""
+        from scipy.optimize import least_squares
+
+        low, high = self.bounds()
+        best, cost = self.start(), np.inf
+        for attempt in range(starts):
+            first = self.start()
+            if attempt:
+                spread = (high - low) * np.tile([0.30] * 6 + [0.25] * 4, len(self.group.muscles))
+                first = first + rng.normal(0, 0.5, len(first)) * spread
+            inside = np.clip(first, low + 1e-6, high - 1e-6)
+            found = least_squares(self.residuals, inside, bounds=(low, high), max_nfev=60, x_scale=high - low, diff_step=1e-4)
+            if found.cost < cost:
+                best, cost = found.x, float(found.cost)
+            progress(f"AU {'+'.join(str(unit.number) for unit in self.group.units)}: start {attempt + 1}, cost {cost:.4f}")
+        return best, cost
+
+    def fitted(self, values: Doubles) -> dict[str, MuscleRow]:
+        """The rows of ``muscles.yaml`` for these values."""
+        result = {}
+        for name, value in zip(self.group.muscles, values.reshape(-1, ROWS), strict=True):
+            row = self.anatomy.muscles[name]
+            result[name] = row.model_copy(
+                update={
+                    "origin": _moved(row.origin, value[:3]),
+                    "insertion": _moved(row.insertion, value[3:6]),
+                    "zone_deg": round(float(value[6]), 2),
+                    "fall_start": round(float(value[7]), 4),
+                    "fall_finish": round(float(value[7] + value[8]), 4),
+                    "elasticity": round(float(value[9]), 4),
+                }
+            )
+        return result
+
+
+def _moved(anchor: Anchor, by: Doubles) -> Anchor:
+    return Anchor(at=anchor.at, offset=[round(float(a + b), 4) for a, b in zip(anchor.offset, by, strict=True)])

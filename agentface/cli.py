@@ -1,0 +1,43 @@
+"""The command line: ``agentface --help``."""
+
+from __future__ import annotations
+
+import sys
+from importlib import import_module
+
+import click
+
+from agentface.errors import AgentFaceError
+
+COMMANDS = ("render", "serve", "show", "explain", "check", "bench")
+
+
+class _Commands(click.Group):
+    """Commands that are imported when they are asked for."""
+
+    def list_commands(self, ctx: click.Context) -> list[str]:
+        return list(COMMANDS)
+
+    def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
+        if cmd_name not in COMMANDS:
+            return None
+        command: click.Command = getattr(import_module(f"agentface.commands.{cmd_name}"), cmd_name)
+        return command
+
+    def invoke(self, ctx: click.Context) -> object:
+        try:
+            return super().invoke(ctx)
+        except AgentFaceError as error:
+            click.echo(f"agentface: {error}", err=True)
+            ctx.exit(1)
+
+
+@click.group(cls=_Commands, context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 120})
+@click.version_option(package_name="agentface")
+def cli() -> None:
+    """A facial animation engine for conversational agents: an emotion message comes in, a face shows it."""
+
+
+def main() -> None:
+    """Run the command line."""
+    sys.exit(cli(prog_name="agentface"))

@@ -1,0 +1,33 @@
+"""``agentface bench``: speed, beside what one would use instead."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+import click
+
+from agentface.commands.options import json_option, write_json
+
+
+@click.command()
+@click.argument("name", required=False)
+@json_option
+def bench(*, name: str | None, json_file: str | None) -> None:
+    """Run one benchmark, or all: deform, fuzzy."""
+    from agentface.bench import BENCHES, run
+
+    figures = run(name) if name else {each: run(each) for each in BENCHES}
+    if json_file is not None:
+        write_json(json_file, figures)
+        return
+    for key, value in _flat(figures):
+        click.echo(f"{key:<48} {value:.4g}" if isinstance(value, float) else f"{key:<48} {value}")
+
+
+def _flat(figures: dict[str, Any], prefix: str = "") -> Iterator[tuple[str, Any]]:
+    for key, value in figures.items():
+        if isinstance(value, dict):
+            yield from _flat(value, f"{prefix}{key}.")
+        else:
+            yield f"{prefix}{key}", value

@@ -1,0 +1,108 @@
+"""Options that commands share, and how their values are read."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, TypeVar
+
+import click
+
+from agentface.resources import DEFAULT_FACE
+
+if TYPE_CHECKING:
+    from agentface.face import Face
+
+_Command = TypeVar("_Command", bound=Callable[..., Any])
+
+
+def assignments(_: click.Context, __: click.Parameter, values: Sequence[str]) -> dict[str, float]:
+    """``NAME=V``, several times or several joined by commas, as a mapping."""
+    merged: dict[str, float] = {}
+    for part in (part.strip() for value in values for part in value.split(",")):
+        name, _equals, number = part.partition("=")
+        if name in merged:
+            raise click.BadParameter(f"expected each name once, got {name!r} twice")
+        try:
+            merged[name] = float(number)
+        except ValueError:
+            raise click.BadParameter(f"expected NAME=V with a number, got {part!r}; for example fear=0.8") from None
+    return merged
+
+
+def size(_: click.Context, __: click.Parameter, value: str) -> tuple[int, int]:
+    """``WxH`` in pixels."""
+    width, _x, height = value.lower().partition("x")
+    if not (width.isdecimal() and height.isdecimal() and 1 <= int(width) <= 8192 and 1 <= int(height) <= 8192):
+        raise click.BadParameter(f"expected WxH with numbers in 1..8192, got {value!r}; for example 1280x720")
+    return int(width), int(height)
+
+
+def angles(_: click.Context, __: click.Parameter, value: str | None) -> tuple[float, float] | None:
+    """``YAW,PITCH`` in degrees."""
+    if value is None:
+        return None
+    try:
+        yaw, pitch = (float(part) for part in value.split(","))
+    except ValueError:
+        raise click.BadParameter(f"expected YAW,PITCH in degrees, got {value!r}; for example 10,-5") from None
+    return yaw, pitch
+
+
+def address(_: click.Context, __: click.Parameter, value: str) -> tuple[str, int]:
+    """``HOST:PORT``."""
+    host, _colon, port = value.rpartition(":")
+    if not (host and port.isdecimal() and int(port) <= 65535):
+        raise click.BadParameter(f"expected HOST:PORT with a port up to 65535, got {value!r}")
+    return host.strip("[]"), int(port)
+
+
+emotion_option = click.option(
+    "--emotion",
+    "emotions",
+    multiple=True,
+    callback=assignments,
+    metavar="NAME=V",
+    help="An emotion, 0..1.",
+)
+size_option = click.option(
+    "--size", default="1280x720", callback=size, metavar="WxH", show_default=True, help="Width and height in pixels."
+)
+camera_option = click.option(
+    "--camera", type=click.Choice(["front", "three-quarter", "profile"]), default="front", show_default=True
+)
+quality_option = click.option("--quality", type=click.Choice(["fast", "portrait"]), default="fast", show_default=True)
+json_option = click.option(
+    "--json", "json_file", metavar="FILE", help="Write one JSON object to FILE, - for the standard output."
+)
+
+
+def face_options(command: _Command) -> _Command:
+    """Add ``--face`` and ``--deformer``."""
+    face = click.option(
+        "--face", default=DEFAULT_FACE, metavar="NAME|PATH", show_default=True, help="A face's name, or its folder."
+    )
+    deformer = click.option(
+        "--deformer", type=click.Choice(["geometric", "tissue"]), default="geometric", show_default=True
+    )
+    return face(deformer(command))
+
+
+def make_face(face: str, deformer: str) -> Face:
+    """The face that ``--face`` and ``--deformer`` name."""
+    from agentface.face import Face
+
+    return Face(face, deformer=deformer)
+
+
+def write_json(file: str, content: dict[str, Any]) -> None:
+    """One JSON object to ``file`` or, for ``-``, to the standard output; raises OutputError."""
+    import json
+
+    text = json.dumps(content, indent=2, allow_nan=False) + "\n"
+    if file == "-":
+        click.echo(text, nl=False)
+    else:
+        from agentface.io.files import write_file
+
+        write_file(Path(file), text.encode())

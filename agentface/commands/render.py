@@ -1,0 +1,68 @@
+"""``agentface render``: one picture."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+from agentface.commands.options import (
+    angles,
+    assignments,
+    camera_option,
+    emotion_option,
+    face_options,
+    make_face,
+    quality_option,
+    size_option,
+)
+
+
+@click.command()
+@emotion_option
+@click.option(
+    "--muscle",
+    "muscles",
+    multiple=True,
+    callback=assignments,
+    metavar="NAME=V",
+    help="A muscle, 0..1.",
+)
+@click.option("--gaze", callback=angles, metavar="YAW,PITCH", help="Degrees to the person's left, and upward.")
+@click.option("--jaw", type=float, metavar="V", help="Opening of the jaw, 0..1.")
+@size_option
+@quality_option
+@camera_option
+@click.option("-o", "--output", type=click.Path(path_type=Path), required=True, metavar="FILE.png")
+@face_options
+def render(
+    *,
+    emotions: dict[str, float],
+    muscles: dict[str, float],
+    gaze: tuple[float, float] | None,
+    jaw: float | None,
+    size: tuple[int, int],
+    quality: str,
+    camera: str,
+    output: Path,
+    face: str,
+    deformer: str,
+) -> None:
+    """Write a picture of a face.
+
+    Emotions and muscles may be given several times: --emotion happiness=0.6 --emotion surprise=0.4
+    """
+    from agentface.io.files import check_writable
+    from agentface.io.picture import check_picture_name, write_picture
+
+    check_picture_name(output)
+    check_writable(output)
+    shown = make_face(face, deformer)
+    shown.set_emotion(emotions, fade=0.0)
+    for name, contraction in muscles.items():
+        shown.set_muscle(name, contraction, fade=0.0)
+    if jaw is not None:
+        shown.set_jaw(jaw, fade=0.0)
+    if gaze is not None:
+        shown.set_gaze(*gaze, fade=0.0)
+    write_picture(output, shown.render(size, camera, quality))

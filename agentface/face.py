@@ -1,0 +1,246 @@
+""":class:`Face`: the whole engine behind a few calls."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from functools import cache
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from agentface.anatomy.model import HeadModel, load_model
+from agentface.conventions import Bytes, check_duration, check_fraction, check_range
+from agentface.deform.geometry import FaceGeometry
+from agentface.emotion.explanation import Explanation
+from agentface.emotion.inference import default_inference
+from agentface.emotion.state import EmotionState, canonical
+from agentface.errors import InvalidValueError, UnknownNameError
+from agentface.motion.clock import Clock, SystemClock
+from agentface.motion.mixer import Mixer
+from agentface.parameters import MUSCLES, PARAMETERS, FacePose, parameter
+from agentface.resources import DEFAULT_FACE
+
+if TYPE_CHECKING:
+    from agentface.deform.pipeline import Deformer
+    from agentface.view.renderer import Renderer
+
+DEFORMERS = ("geometric", "tissue")
+_CONTRACTED = tuple(known for known in PARAMETERS if known.kind not in ("gaze", "head"))
+
+
+@dataclass(slots=True)
+class Traffic:
+    """Counts of the messages that came from outside: those understood, and the others by what was wrong."""
+
+    messages: int = 0
+    errors: dict[str, int] = field(default_factory=lambda: dict.fromkeys(("malformed", "unknown", "rejected"), 0))
+
+
+class Face:
+    """A face that shows what it is told.
+
+    Args:
+        face: the name of a face, the path of its folder, or a model that is already loaded.
+        deformer: ``geometric`` (Bui et al.).
+        seed: of everything random in the motion; the same calls then give the same frames.
+        clock: measures ``frame_ms``; the motion itself takes its time from ``step`` alone.
+
+    A call changes where the face goes, ``step`` moves it there. Times are seconds; a fade of 0 is done at once.
+    Every call checks its arguments first and changes nothing when it raises: UnknownNameError for a name,
+    InvalidValueError for a value.
+
+    Emotions: ``set_emotion("fear", 0.5)`` changes that emotion and leaves the others, so that several can be
+    mixed one by one; ``set_emotion({"fear": 0.5})`` sets the whole state, and what it does not name goes to 0;
+    ``neutral()`` clears everything.
+    """
+
+    def __init__(
+        self,
+        face: str | Path | HeadModel = DEFAULT_FACE,
+        *,
+        deformer: str = "geometric",
+        seed: int = 0,
+        clock: Clock | None = None,
+    ) -> None:
+        _check_deformer(deformer)
+        self.model = face if isinstance(face, HeadModel) else load_model(face)
+        self.random = np.random.default_rng(seed)
+        self.traffic = Traffic()
+        self.inputs: list[Callable[[], None]] = []
+        """Called at the start of every step: where servers hand over what came in."""
+        self._clock = clock or SystemClock()
+        self._inference = default_inference()
+        self._mixer = Mixer(self._inference)
+        self._deformer = _deformer(self.model)
+        self._renderer: Renderer | None = None
+        self._pose: FacePose | None = None
+        self._geometry: FaceGeometry | None = None
+        self._frame_ms = 0.0
+
+    def set_emotion(
+        self,
+        emotion: str | Mapping[str, float],
+        intensity: float | None = None,
+        *,
+        fade: float = 0.25,
+        hold: float | None = None,
+    ) -> None:
+        """Show one emotion at ``intensity`` 0..1 beside the others, or, given a mapping, exactly this state.
+
+        The face gets there in ``fade`` seconds. With ``hold`` it goes back, as fast, after so many seconds.
+        """
+        fade = check_duration("fade", fade)
+        hold = None if hold is None else check_duration("hold", hold)
+        if isinstance(emotion, Mapping):
+            if intensity is not None:
+                raise InvalidValueError("intensity", "none beside a mapping, which has its own", intensity)
+            changes = EmotionState.of(emotion).as_dict()
+        else:
+            changes = {canonical(emotion): check_fraction("intensity", intensity)}
+        self._mixer.emotion.change(changes, fade, hold)
+        self._touch()
+
+    def neutral(self, fade: float = 0.25) -> None:
+        """Let go of everything: emotions, single muscles, jaw, gaze and head."""
+        fade = check_duration("fade", fade)
+        self._mixer.emotion.change(EmotionState().as_dict(), fade, None)
+        self._mixer.muscles.release(None, fade)
+        self._mixer.gaze.turn((0.0, 0.0), fade)
+        self._mixer.head.turn((0.0, 0.0, 0.0), fade)
+        self._touch()
+
+    def set_muscle(self, name: str, contraction: float | None, *, fade: float = 0.25) -> None:
+        """Hold a muscle (both sides where ``name`` has none) at 0..1, whatever else moves it; None releases it."""
+        fade = check_duration("fade", fade)
+        if name not in muscle_names():
+            raise UnknownNameError("muscle", name, muscle_names())
+        if contraction is None:
+            self._mixer.muscles.release(name, fade)
+        else:
+            self._mixer.muscles.set(name, check_fraction(name, contraction), fade)
+        self._touch()
+
+    def set_jaw(self, opening: float | None, *, fade: float = 0.25) -> None:
+        """Hold the jaw open at 0..1 of its widest opening; None releases it."""
+        self.set_muscle("jaw_open", opening, fade=fade)
+
+    def set_gaze(self, yaw_deg: float, pitch_deg: float, *, fade: float = 0.06) -> None:
+        """Look ``yaw_deg`` to the person's left (-50..50) and ``pitch_deg`` up (-40..40); a saccade by default."""
+        fade = check_duration("fade", fade)
+        self._mixer.gaze.turn((check_angle("gaze_yaw", yaw_deg), check_angle("gaze_pitch", pitch_deg)), fade)
+        self._touch()
+
+    def set_head(self, yaw_deg: float, pitch_deg: float, roll_deg: float = 0.0, *, fade: float = 0.4) -> None:
+        """Turn the head to its left (-80..80), up (-60..60), and tilt it to its left (-50..50)."""
+        fade = check_duration("fade", fade)
+        turns = (("head_yaw", yaw_deg), ("head_pitch", pitch_deg), ("head_roll", roll_deg))
+        self._mixer.head.turn(tuple(check_angle(name, angle) for name, angle in turns), fade)
+        self._touch()
+
+    def blink(self) -> None:
+        """Blink once."""
+        self._mixer.blink.blink()
+
+    def step(self, dt: float) -> FaceGeometry:
+        """Take in what came from outside, let ``dt`` seconds pass, and return the face as it is then.
+
+        The arrays of the geometry are valid until the next step.
+        """
+        dt = check_duration("dt", dt)
+        for take_in in self.inputs:
+            take_in()
+        start = self._clock.now()
+        self._mixer.advance(dt)
+        self._touch()
+        geometry = self.geometry
+        self._frame_ms = 1000.0 * (self._clock.now() - start)
+        return geometry
+
+    @property
+    def pose(self) -> FacePose:
+        """Every animation parameter as shown now."""
+        if self._pose is None:
+            self._pose = self._mixer.pose()
+        return self._pose
+
+    @property
+    def geometry(self) -> FaceGeometry:
+        """The face as shown now; its arrays are valid until the next step."""
+        if self._geometry is None:
+            self._geometry = self._deformer.deform(self.pose)
+        return self._geometry
+
+    def render(self, size: tuple[int, int] = (1280, 720), camera: str = "front", quality: str = "fast") -> Bytes:
+        """A picture of the face as shown now: ``(height, width, 3)`` uint8, sRGB.
+
+        Args:
+            size: width and height in pixels.
+            camera: ``front``, ``three-quarter`` or ``profile``.
+            quality: ``fast`` or ``portrait``.
+
+        Raises GraphicsError where the machine has no OpenGL.
+        """
+        if self._renderer is None:
+            from agentface.view.renderer import Renderer
+
+            self._renderer = Renderer(self.model)
+        return self._renderer.render(self.geometry, size=size, camera=camera, quality=quality)
+
+    def explain(self) -> Explanation:
+        """Which rules make the contractions of the target emotions; has ``as_dict()`` and ``render()``."""
+        return self._inference.explain(self._mixer.emotion.target)
+
+    def status(self) -> dict[str, Any]:
+        """What the face is doing now, JSON-ready.
+
+        ``face``; ``emotion``, the six target intensities; ``shown``, the ``emotion`` and the ``contractions`` as
+        drawn now; ``speech``, null while the face does not speak; ``gaze_deg``, yaw and pitch; ``frame_ms``, what
+        the last step took; ``messages`` understood; ``errors``, the count of malformed, unknown and rejected ones.
+        """
+        emotion, pose = self._mixer.emotion, self.pose
+        shown = zip(emotion.target, emotion.intensities.value.tolist(), strict=True)
+        return {
+            "face": self.model.name,
+            "emotion": {name: round(value, 4) for name, value in emotion.target.as_dict().items()},
+            "shown": {
+                "emotion": {name: round(value, 4) for name, value in shown},
+                "contractions": {known.name: round(pose[known.name], 4) for known in _CONTRACTED},
+            },
+            "speech": None,
+            "gaze_deg": [round(math.degrees(pose[name]), 3) for name in ("gaze_yaw", "gaze_pitch")],
+            "frame_ms": round(self._frame_ms, 3),
+            "messages": self.traffic.messages,
+            "errors": dict(self.traffic.errors),
+        }
+
+    def _touch(self) -> None:
+        self._pose = self._geometry = None
+
+
+@cache
+def muscle_names() -> tuple[str, ...]:
+    """The names that ``set_muscle`` knows: muscles without their side, then with it, and the jaw."""
+    return tuple(dict.fromkeys((*MUSCLES, *(known.name for known in _CONTRACTED))))
+
+
+def check_angle(name: str, degrees: Any) -> float:
+    """The angle of a parameter such as ``gaze_yaw`` in radians, given in degrees; raises InvalidValueError."""
+    known = parameter(name)
+    low, high = (round(math.degrees(limit), 6) for limit in (known.low, known.high))
+    return math.radians(check_range(f"{name}_deg", degrees, low, high))
+
+
+def _check_deformer(name: str) -> None:
+    if name not in DEFORMERS:
+        raise UnknownNameError("deformer", name, DEFORMERS)
+    if name == "tissue":
+        raise InvalidValueError("deformer", "geometric", name, "this version has no layered tissue yet")
+
+
+def _deformer(model: HeadModel) -> Deformer:
+    from agentface.deform.pipeline import GeometricDeformer
+
+    return GeometricDeformer(model)

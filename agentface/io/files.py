@@ -1,0 +1,42 @@
+"""Files written as a whole or not at all."""
+
+from __future__ import annotations
+
+import os
+import tempfile
+from pathlib import Path
+
+from agentface.errors import OutputError
+
+
+def check_writable(path: Path) -> None:
+    """Raise OutputError when ``path`` cannot become a file, before work is spent on its content."""
+    folder = path.parent
+    if path.is_dir():
+        raise OutputError(f"{path}: expected the name of a file, got a folder")
+    if not folder.is_dir():
+        raise OutputError(f"{path}: expected a file in a folder that exists, got no folder {folder}; make it first")
+    if not os.access(folder, os.W_OK):
+        raise OutputError(f"{path}: expected a folder that can be written to, got {folder}; choose another one")
+
+
+def write_file(path: Path, content: bytes) -> None:
+    """Write ``content``; raises OutputError, and then leaves what was there."""
+    check_writable(path)
+    temporary = None
+    try:
+        with tempfile.NamedTemporaryFile(dir=path.parent, prefix=f".{path.name}.", delete=False) as file:
+            temporary = Path(file.name)
+            file.write(content)
+        temporary.chmod(0o666 & ~_umask())
+        temporary.replace(path)
+    except OSError as error:
+        if temporary is not None:
+            temporary.unlink(missing_ok=True)
+        raise OutputError(f"{path}: cannot be written: {error.strerror or error}") from error
+
+
+def _umask() -> int:
+    mask = os.umask(0)
+    os.umask(mask)
+    return mask

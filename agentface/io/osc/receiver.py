@@ -1,0 +1,112 @@
+"""What datagrams do to a face: decode, check, keep the newest, answer. No sockets here."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Iterable
+from typing import Any, TypeAlias
+
+from agentface.errors import AgentFaceError, InvalidValueError
+from agentface.face import Face
+from agentface.io.osc.agenda import FURTHEST_S, MOST, Agenda
+from agentface.io.osc.codec import MalformedError, Message, address_of, decode, encode
+from agentface.io.osc.commands import (
+    PREFIX,
+    STATUS,
+    Command,
+    UnknownAddressError,
+    name_of,
+    read_command,
+    reason_and_hint,
+)
+from agentface.motion.clock import Clock
+
+Sender: TypeAlias = tuple[Any, ...]
+"""The address of a socket."""
+ANSWERS_AT_ONCE, ANSWERS_A_SECOND = 200.0, 100.0
+
+
+class Receiver:
+    """Applies datagrams to a face, a whole frame's worth at a time.
+
+    Of commands of the same kind (the same address and name) only the newest is applied: a flood costs decoding,
+    never a queue. Answers go through ``reply``; at most 200 at once and 100 a second are sent over all senders, the
+    rest are dropped, so that forged senders cannot turn the server into a flood of its own. ``status`` is answered
+    once a frame and sender.
+    """
+
+    def __init__(self, face: Face, reply: Callable[[bytes, Sender], None], clock: Clock) -> None:
+        self._face, self._reply, self._clock = face, reply, clock
+        self._agenda = Agenda()
+        self._allowance, self._counted = ANSWERS_AT_ONCE, clock.now()
+
+    def take(self, datagrams: Iterable[tuple[bytes, Sender]]) -> None:
+        """Take in datagrams and what has come due; then answer those who asked for the status."""
+        newest: dict[tuple[str, ...], Command] = {}
+        askers: dict[Sender, None] = {}
+        for command in self._agenda.due(self._clock.date()):
+            _put(newest, command)
+        for packet, sender in datagrams:
+            try:
+                messages = decode(packet)
+            except MalformedError as error:
+                self._refuse("malformed", sender, address_of(packet), str(error), "send OSC 1.0")
+                continue
+            for message in messages:
+                self._take_one(message, sender, newest, askers)
+        for command in newest.values():
+            command.apply(self._face)
+        for sender in askers:
+            self._answer(encode(f"{PREFIX}{STATUS}", json.dumps(self._face.status(), allow_nan=False)), sender)
+
+    def _take_one(
+        self,
+        message: Message,
+        sender: Sender,
+        newest: dict[tuple[str, ...], Command],
+        askers: dict[Sender, None],
+    ) -> None:
+        traffic = self._face.traffic
+        try:
+            name = name_of(message.address, self._face.model.name)
+            if name == STATUS:
+                askers[sender] = None
+            else:
+                self._plan(read_command(name, message), message.date, newest)
+        except UnknownAddressError:
+            traffic.errors["unknown"] += 1
+        except AgentFaceError as error:
+            self._refuse("rejected", sender, message.address, *reason_and_hint(error))
+        else:
+            traffic.messages += 1
+
+    def _plan(self, command: Command, date: float | None, newest: dict[tuple[str, ...], Command]) -> None:
+        now = self._clock.date()
+        if date is None or date <= now:
+            _put(newest, command)
+            return
+        if date > now + FURTHEST_S:
+            raise InvalidValueError(
+                "time tag", f"at most {FURTHEST_S:g} s ahead", f"{date - now:.0f} s", "check the clock"
+            )
+        if self._agenda.full:
+            raise InvalidValueError("bundle", f"at most {MOST} messages waiting", "one more", "send it later")
+        self._agenda.add(date, command)
+
+    def _refuse(self, kind: str, sender: Sender, address: str, reason: str, hint: str) -> None:
+        self._face.traffic.errors[kind] += 1
+        self._answer(encode(f"{PREFIX}error", address[:200], reason, hint[:400]), sender)
+
+    def _answer(self, packet: bytes, sender: Sender) -> None:
+        now = self._clock.now()
+        self._allowance = min(ANSWERS_AT_ONCE, self._allowance + ANSWERS_A_SECOND * (now - self._counted))
+        self._counted = now
+        if self._allowance >= 1.0:
+            self._allowance -= 1.0
+            self._reply(packet, sender)
+
+
+def _put(newest: dict[tuple[str, ...], Command], command: Command) -> None:
+    # Taken out first: commands are applied in the order of their newest message.
+    newest.pop(command.key, None)
+    newest[command.key] = command

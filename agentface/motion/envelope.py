@@ -1,0 +1,99 @@
+"""Values on their way from what is shown now to a target, each in its own time."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from agentface.conventions import Doubles
+
+_PEAK = 0.2
+"""The largest value of the braking curve is just below this."""
+_MONOTONE = 2.5
+"""A minimum-jerk path does not overshoot while its first speed is at most this times its mean speed."""
+_OVERSHOOT = 0.1
+"""How far, of the whole range, a value may run past its target when it is turned round in full motion."""
+
+
+class Envelope:
+    """``size`` values that move smoothly: no jump, and no kink in the speed, even when turned round half-way.
+
+    A move follows the minimum-jerk path ``10 u^3 - 15 u^4 + 6 u^5`` (Flash and Hogan, J. Neuroscience 5, 1985), which
+    starts and ends at rest; the speed that a value has when a move begins is taken over and braked away by the path of
+    the same family that begins and ends at 0. Values never leave ``low..high``, and end exactly on their target.
+
+    Attributes:
+        value: ``(size,)`` float64, what is shown now.
+        velocity: ``(size,)`` float64, its change a second.
+        target: ``(size,)`` float64, where it goes.
+    """
+
+    def __init__(self, size: int, low: npt.ArrayLike = 0.0, high: npt.ArrayLike = 1.0) -> None:
+        self.low: Doubles = np.array(np.broadcast_to(low, size), np.float64)
+        self.high: Doubles = np.array(np.broadcast_to(high, size), np.float64)
+        self.value, self.velocity, self.target = (np.zeros(size) for _ in range(3))
+        self._start, self._speed = np.zeros(size), np.zeros(size)
+        self._travel, self._brake, self._elapsed = np.ones(size), np.ones(size), np.ones(size)
+        self._settled = True
+
+    @property
+    def settled(self) -> bool:
+        """Whether every value is on its target."""
+        return self._settled
+
+    def move(self, target: npt.ArrayLike, fade: float, where: Any = slice(None)) -> None:
+        """Send the values at ``where`` to ``target`` within ``fade`` seconds; 0 puts them there at once.
+
+        A value that already is on its way to the same target, and due earlier, keeps its way: repeating a
+        message does not hold the face back.
+        """
+        places = np.arange(len(self.value))[where]
+        targets = np.broadcast_to(np.asarray(target, np.float64), places.shape)
+        if fade > 0.0:
+            remaining = np.maximum(self._travel, self._brake)[places] - self._elapsed[places]
+            fresh = (targets != self.target[places]) | (remaining > fade)
+            places, targets = places[fresh], targets[fresh]
+        else:
+            self.value[places], self.velocity[places] = targets, 0.0
+        self.target[places] = targets
+        self._start[places] = self.value[places]
+        self._speed[places] = self.velocity[places]
+        self._travel[places], self._brake[places] = self._durations(places, max(fade, 1e-6))
+        self._elapsed[places] = 0.0
+        self._settled = bool((self.value == self.target).all() and not self.velocity.any())
+
+    def advance(self, dt: float) -> Doubles:
+        """Let ``dt`` seconds pass; returns ``value``."""
+        if self._settled:
+            return self.value
+        self._elapsed += dt
+        u = np.minimum(self._elapsed / self._travel, 1.0)
+        w = np.minimum(self._elapsed / self._brake, 1.0)
+        distance = self.target - self._start
+        path = u**3 * (10.0 - 15.0 * u + 6.0 * u * u)
+        braking = w * (1.0 - w) ** 3 * (1.0 + 3.0 * w)
+        value = self._start + distance * path + self._speed * self._brake * braking
+        self.velocity = distance / self._travel * 30.0 * u * u * (1.0 - u) ** 2
+        self.velocity += self._speed * (1.0 - w) ** 2 * (1.0 + 2.0 * w - 15.0 * w * w)
+        there = (u >= 1.0) & (w >= 1.0)
+        self.value = np.where(there, self.target, np.clip(value, self.low, self.high))
+        self._settled = bool(there.all())
+        return self.value
+
+    def _durations(self, places: npt.NDArray[np.intp], fade: float) -> tuple[Doubles, Doubles]:
+        # Two ways to take over a speed: shorten the move until it does not overshoot, or brake beside it and
+        # overshoot a little where the range leaves room. Each value takes the one that brakes more gently.
+        speed = self._speed[places]
+        ahead = (self.target[places] - self._start[places]) * np.sign(speed)
+        furthest = np.where(speed > 0.0, self.high[places], -self.low[places])
+        outermost = np.maximum(self._start[places] * np.sign(speed), self.target[places] * np.sign(speed))
+        room = np.minimum(furthest - outermost, _OVERSHOOT * (self.high - self.low)[places])
+        quick = np.maximum(np.abs(speed), 1e-12)
+        shortened = np.minimum(_MONOTONE * np.maximum(ahead, 0.0) / quick, fade)
+        beside = np.minimum(np.maximum(room, 0.0) / (_PEAK * quick), fade)
+        shorten = shortened >= beside
+        travel = np.where(shorten & (speed != 0.0), shortened, fade)
+        brake = np.where(shorten, shortened, beside)
+        return np.maximum(travel, 1e-6), np.maximum(brake, 1e-6)

@@ -1,0 +1,37 @@
+"""The channels together: one pose of what all of them ask for."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from agentface.motion.blink import BlinkChannel
+from agentface.motion.channels import Contractor, EmotionChannel, MuscleChannel, TurnChannel
+from agentface.parameters import COUNT, FacePose
+
+
+class Mixer:
+    """Channels in the order in which they are written.
+
+    Contractions of different channels merge by their maximum: two causes do not contract a muscle twice. A
+    muscle that is set by name comes last and wins over all of them. Gaze and head have parameters of their own.
+    """
+
+    def __init__(self, inference: Contractor) -> None:
+        self.emotion = EmotionChannel(inference)
+        self.blink = BlinkChannel()
+        self.muscles = MuscleChannel()
+        self.gaze = TurnChannel("gaze")
+        self.head = TurnChannel("head")
+        self._channels = (self.emotion, self.blink, self.muscles, self.gaze, self.head)
+
+    def advance(self, dt: float) -> None:
+        """Let ``dt`` seconds pass in every channel."""
+        for channel in self._channels:
+            channel.advance(dt)
+
+    def pose(self) -> FacePose:
+        """The parameters shown now."""
+        values = np.zeros(COUNT)
+        for channel in self._channels:
+            channel.write(values)
+        return FacePose(values.astype(np.float32))

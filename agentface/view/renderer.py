@@ -1,0 +1,183 @@
+"""Pictures of a face: uploads one frame's vertices, everything else stays on the GPU."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from agentface.anatomy.model import HeadModel
+from agentface.conventions import Bytes
+from agentface.deform.geometry import FaceGeometry
+from agentface.errors import InvalidValueError, UnknownNameError
+from agentface.view.brows import brow_hairs, lash_hairs
+from agentface.view.camera import Camera, named_view
+from agentface.view.context import compile_program, open_context
+from agentface.view.frame import pack_frame
+from agentface.view.look import Look, load_look
+from agentface.view.noise import SIDE, noise_volume
+from agentface.view.parts import Eyeball, RigidPart
+from agentface.view.refine import vertex_normals
+from agentface.view.ribbons import HairArray
+from agentface.view.skin import Skin, SkinFields
+from agentface.view.targets import Targets
+
+QUALITIES: dict[str, int] = {"fast": 0, "portrait": 4}
+"""Name of a quality: samples a pixel (0: one, not resolved)."""
+LARGEST_SIDE = 8192
+_SEED = 20
+_FRAME_BYTES = 3 * 64 + 11 * 16
+_BINDING = 0
+
+
+class Renderer:
+    """Draws one face.
+
+    Args:
+        model: the face.
+        look: its colours and lights; the model's own ``look.yaml`` when None.
+        context: a ``moderngl.Context``; a headless one is opened when None.
+
+    Raises GraphicsError when there is no OpenGL or a shader does not compile.
+    """
+
+    def __init__(self, model: HeadModel, look: Look | None = None, context: Any = None) -> None:
+        self.model = model
+        self.look = look if look is not None else load_look(model)
+        self.context = context if context is not None else open_context()
+        self._targets: dict[tuple[tuple[int, int], int], Targets] = {}
+        self._frame = self.context.buffer(reserve=_FRAME_BYTES)
+        rng = np.random.default_rng(_SEED)
+        self._noise = self.context.texture3d((SIDE,) * 3, 4, noise_volume(rng).tobytes())
+        self._programs = {name: self._compile(f"{name}.vert.glsl", f"{name}.frag.glsl") for name in ("skin", "part", "eye", "ribbon")}
+        self._develop = self._compile("screen.vert.glsl", "develop.frag.glsl")
+        self._screen = self.context.vertex_array(self._develop, [])
+        self._fields = SkinFields(self.context, len(model.vertices))
+        self._skins = {name: Skin(self.context, self._programs["skin"], model, fine=samples > 0) for name, samples in QUALITIES.items()}
+        self._parts = {name: self._part(name) for name in ("teeth_upper", "teeth_lower", "tongue")}
+        self._eyes = [Eyeball(self.context, self._programs["eye"], model, side) for side in "lr"]
+        normals = vertex_normals(model.vertices, model.triangles)
+        hair = self.look.hair
+        self._hairs = [
+            HairArray(self.context, self._programs["ribbon"], brow_hairs(model, normals, hair, rng), 0.35),
+            HairArray(self.context, self._programs["ribbon"], lash_hairs(model, normals, hair, rng), 0.1),
+        ]
+        self._set_look()
+
+    def render(
+        self,
+        geometry: FaceGeometry,
+        size: tuple[int, int] = (1280, 720),
+        camera: Camera | str = "front",
+        quality: str = "fast",
+    ) -> Bytes:
+        """A picture of ``geometry`` as ``(height, width, 3)`` uint8 sRGB, the top row first.
+
+        Args:
+            geometry: the face at one instant.
+            size: width and height in pixels, 1..8192 each.
+            camera: a camera, or the name of a view: front, three-quarter, profile.
+            quality: ``fast`` or ``portrait``.
+
+        Raises InvalidValueError for a wrong size, UnknownNameError for an unknown view or quality.
+        """
+        targets = self._targets_for(size, quality)
+        self.draw(geometry, targets, camera, quality)
+        width, height = targets.size
+        pixels = np.frombuffer(targets.picture.read(components=3, alignment=1), np.uint8)
+        return np.ascontiguousarray(pixels.reshape(height, width, 3)[::-1])
+
+    def draw(self, geometry: FaceGeometry, targets: Targets, camera: Camera | str, quality: str, onto: Any = None) -> None:
+        """Draw into ``targets`` and develop into its picture, or into the framebuffer ``onto``."""
+        import moderngl
+
+        context = self.context
+        seen_from = named_view(self.model, camera) if isinstance(camera, str) else camera
+        self._frame.write(pack_frame(seen_from, targets.size, geometry.head, self.look.lights))
+        self._frame.bind_to_uniform_block(_BINDING)
+        self._fields.update(geometry)
+        self._fields.texture.use(0)
+        self._noise.use(1)
+        targets.scene.use()
+        targets.scene.clear(0.0, 0.0, 0.0, 0.0)
+        context.enable_only(moderngl.DEPTH_TEST)
+        self._draw_solids(geometry, quality)
+        context.enable_only(moderngl.DEPTH_TEST | moderngl.BLEND)
+        context.blend_func = (moderngl.SRC_ALPHA, moderngl.ONE_MINUS_SRC_ALPHA, moderngl.ONE, moderngl.ONE_MINUS_SRC_ALPHA)
+        for hairs in self._hairs:
+            hairs.draw()
+        if targets.samples:
+            context.copy_framebuffer(targets.resolved, targets.scene)
+        context.enable_only(moderngl.NOTHING)
+        screen = onto if onto is not None else targets.picture
+        screen.use()
+        targets.light.use(0)
+        self._develop["aspect"].value = targets.size[0] / targets.size[1]
+        self._screen.render(moderngl.TRIANGLES, 3)
+
+    def _draw_solids(self, geometry: FaceGeometry, quality: str) -> None:
+        self._skins[quality].draw()
+        self._parts["teeth_upper"].draw(geometry.head)
+        for name in ("teeth_lower", "tongue"):
+            self._parts[name].draw(geometry.head @ geometry.jaw)
+        for eye in self._eyes:
+            eye.draw(geometry)
+
+    def _compile(self, vertex: str, fragment: str) -> Any:
+        program = compile_program(self.context, vertex, fragment)
+        for name, slot in (("skin_fields", 0), ("noise_volume", 1), ("light", 0)):
+            if name in program:
+                program[name].value = slot
+        if "Frame" in program:
+            program["Frame"].binding = _BINDING
+        return program
+
+    def _part(self, name: str) -> RigidPart:
+        mesh = self.model.parts[name]
+        material = mesh.attributes["_MATERIAL"].astype(np.float32) / 255
+        material[:, 3] = 0.0
+        return RigidPart(self.context, self._programs["part"], mesh.attributes["POSITION"], mesh.triangles, material)
+
+    def _set_look(self) -> None:
+        look, front = self.look, float(self.model.landmarks["upper_lip_middle"][2])
+        values: dict[str, dict[str, Any]] = {
+            "skin": {"skin_tone": look.skin.tone, "lip_tint": look.skin.lips, "shine": look.skin.shine, "mouth_front": front,
+                     "hair_colour": look.hair.colour},
+            "part": {"mouth_front": front, "cloth": look.cloth},
+            "eye": {"iris_inner": look.eyes.iris_inner, "iris_outer": look.eyes.iris_outer, "sclera": look.eyes.sclera,
+                    "pupil_radius": look.eyes.pupil, "iris_radius": 0.445},
+        }  # fmt: skip
+        for name, rows in values.items():
+            _set(self._programs[name], rows)
+        developed = {"background_inner": look.background_inner, "background_outer": look.background_outer, "exposure": look.exposure}
+        _set(self._develop, developed)
+
+    def _targets_for(self, size: tuple[int, int], quality: str) -> Targets:
+        if quality not in QUALITIES:
+            raise UnknownNameError("quality", quality, tuple(QUALITIES))
+        key = (checked_size(size), QUALITIES[quality])
+        if key not in self._targets:
+            if len(self._targets) >= 4:
+                self._targets.pop(next(iter(self._targets))).release()
+            self._targets[key] = Targets.make(self.context, *key)
+        return self._targets[key]
+
+
+def checked_size(size: Any) -> tuple[int, int]:
+    """Width and height in pixels; raises InvalidValueError unless both are whole numbers in 1..8192."""
+    expected = f"(width, height), whole numbers of pixels in 1..{LARGEST_SIDE}"
+    try:
+        width, height = size
+    except (TypeError, ValueError):
+        raise InvalidValueError("size", expected, size) from None
+    if not all(isinstance(side, (int, np.integer)) and not isinstance(side, bool) for side in (width, height)):
+        raise InvalidValueError("size", expected, size)
+    if not (1 <= width <= LARGEST_SIDE and 1 <= height <= LARGEST_SIDE):
+        raise InvalidValueError("size", expected, size)
+    return int(width), int(height)
+
+
+def _set(program: Any, values: dict[str, Any]) -> None:
+    for name, value in values.items():
+        if name in program:  # a compiler drops what a shader does not use
+            program[name].value = tuple(value) if isinstance(value, list) else value

@@ -1,0 +1,59 @@
+#version 330 core
+#include "frame.glsl"
+#include "shading.glsl"
+#include "noise.glsl"
+centroid in vec3 position, local, local_normal;
+out vec4 colour;
+
+uniform mat4 turned;
+uniform vec3 centre;        // in the scene
+uniform float radius;
+uniform vec3 upper_lid;     // height over x as a parabola, in radii, in the head's axes
+uniform vec3 lower_lid;
+uniform vec2 corners;       // x of the canthi in radii, the smaller first
+uniform vec3 iris_inner, iris_outer;
+uniform float iris_radius, pupil_radius;   // in radii; in radii of the iris
+uniform vec3 sclera;
+
+void main() {
+    mat3 axes = mat3(turned) / radius;
+    vec3 view = normalize(eye_point.xyz - position), n = normalize(axes * local_normal);
+    // the iris lies flat behind the cornea, which refracts
+    vec3 ray = refract(-transpose(axes) * view, normalize(local_normal), 1.0 / 1.336);
+    float depth = sqrt(1.0 - iris_radius * iris_radius) - 0.02;
+    vec3 at = local + ray * max((depth - local.z) / min(ray.z, -0.05), 0.0);
+    float edge = length(local.xy), ri = length(at.xy) / iris_radius;
+    float on_iris = smoothstep(iris_radius + 0.02, iris_radius - 0.03, edge) * step(0.0, local.z);
+    vec2 spoke = at.xy / max(length(at.xy), 1e-4);
+    float fibres = 0.6 * noise(vec3(spoke * 0.55, 0.12 * ri)).r + 0.4 * noise(vec3(spoke * 1.7, 0.2 * ri)).g;
+    vec3 iris = mix(iris_outer, iris_inner, smoothstep(0.35, 0.62, fibres)) * mix(1.2, 0.75, smoothstep(0.38, 0.9, ri));
+    iris *= 1.0 - 0.8 * smoothstep(0.80, 1.02, ri);
+    iris *= smoothstep(pupil_radius, pupil_radius + 0.06, ri);
+    float side = length(local.xy);
+    vec3 white = mix(sclera, sclera * vec3(0.92, 0.62, 0.56), 0.5 * smoothstep(0.5, 0.95, side));
+    white *= 1.0 - 0.35 * smoothstep(iris_radius + 0.10, iris_radius, edge);
+
+    vec3 q = transpose(mat3(head)) * (position - centre) / radius;
+    float over = dot(upper_lid, vec3(1.0, q.x, q.x * q.x)) - q.y, under = q.y - dot(lower_lid, vec3(1.0, q.x, q.x * q.x));
+    float shade = smoothstep(-0.02, 0.42, over) * smoothstep(-0.06, 0.20, under);
+    shade = mix(0.16, 1.0, shade) * mix(0.45, 1.0, smoothstep(0.0, 0.30, min(q.x - corners.x, corners.y - q.x)));
+    vec3 ns = normalize(mix(n, mat3(head)[2], 0.25));
+    vec3 light = hemisphere(ns), behind = 0.8 * hemisphere(n), shine = vec3(0.0);
+    vec3 mirror = reflect(-view, n);
+    float bright = fresnel(0.028, max(dot(n, view), 0.02));
+    vec3 key = transpose(axes) * light_direction[0].xyz;
+    float caustic = 1.0 + 0.9 * smoothstep(-0.2, 1.0, dot(spoke, -normalize(key.xy + 1e-4))) * smoothstep(0.2, 1.0, ri);
+    for (int i = 0; i < 2; i++) {
+        vec3 l = light_direction[i].xyz;
+        light += light_colour[i].rgb * wrapped(vec3(dot(ns, l)), vec3(0.3));
+        behind += light_colour[i].rgb * 0.6 * (i == 0 ? caustic : 1.0);
+        vec3 x = normalize(cross(vec3(0.0, 1.0, 0.0), l)), y = cross(l, x);
+        vec2 b = vec2(dot(mirror, x), dot(mirror, y)), half_size = i == 0 ? vec2(0.20, 0.26) : vec2(0.12, 0.30);
+        vec2 box = smoothstep(half_size + 0.03, half_size - 0.03, abs(b));
+        shine += light_colour[i].rgb * step(0.0, dot(mirror, l)) * box.x * box.y * (i == 0 ? 7.0 : 4.0);
+    }
+    shine += hemisphere(mirror) * 0.9 * smoothstep(-0.1, 0.5, mirror.y);
+    vec3 c = mix(white * light, iris * behind, on_iris) * shade;
+    c += shine * bright * smoothstep(0.0, 0.10, over) * mix(0.6, 1.0, on_iris) * smoothstep(-0.02, 0.06, under);
+    colour = vec4(c, 1.0);
+}

@@ -1,0 +1,27 @@
+#version 330 core
+#include "frame.glsl"
+#include "surface.glsl"
+in ivec2 ends;         // the skin vertices between which this one lies
+in vec3 rest;          // at rest, metres
+in vec3 soft_normal;   // at rest, blurred
+in vec3 rest_normal;
+in vec4 material;      // lip, inside of the mouth, wet lid margin, ear
+in vec4 complexion;    // redness, eye socket, gloss, under the hair
+in float ambient;      // how much of the surroundings' light arrives
+
+centroid out vec3 position, normal, blurred_normal, rest_position;
+centroid out vec4 matter, tint;
+centroid out float open_sky;
+
+void main() {
+    vec4 placed = head * vec4(edge_position(ends), 1.0);
+    vec3 n = edge_normal(ends);
+    position = placed.xyz;
+    normal = mat3(head) * n;
+    blurred_normal = mat3(head) * (soft_normal + 0.6 * (n - rest_normal));
+    rest_position = rest;
+    matter = material;
+    tint = complexion;
+    open_sky = ambient;
+    gl_Position = view_projection * placed;
+}

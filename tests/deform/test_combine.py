@@ -1,0 +1,174 @@
+import dataclasses
+from functools import cache
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from hypothesis.extra.numpy import arrays
+
+from agentface.deform.blocks import LANES, movable, pack
+from agentface.deform.combine import METHODS, REFERENCE, STEP, Combiner, parallel, sequential, summed
+from agentface.deform.vector_muscle import FALLOFFS, MuscleSet
+from agentface.errors import InvalidValueError, UnknownNameError
+from tests.deform.rig import make_rig
+
+COUNT = 38
+CONTRACTIONS = arrays(np.float64, COUNT, elements=st.one_of(st.just(0.0), st.just(1.0), st.floats(0.0, 1.0)))
+
+
+@cache
+def rig(falloff="smooth"):
+    return make_rig(falloff=falloff)
+
+
+@cache
+def combiner(method, falloff="smooth"):
+    return Combiner(rig(falloff).vertices, rig(falloff).muscles, method)
+
+
+def apply(method, contractions, falloff="smooth"):
+    out = np.full_like(rig().vertices, np.nan)
+    combiner(method, falloff).apply(contractions, out)
+    return out
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_the_neutral_face_is_the_rest_face_bit_for_bit(method):
+    assert apply(method, np.zeros(COUNT)).tobytes() == rig().vertices.tobytes()
+
+
+@pytest.mark.parametrize("method", METHODS)
+@settings(max_examples=25, deadline=None)
+@given(contractions=CONTRACTIONS)
+def test_the_kernel_equals_its_numpy_twin(method, contractions):
+    expected = REFERENCE[method](rig().vertices, rig().muscles, contractions)
+    assert np.abs(apply(method, contractions) - expected).max() < 1e-6
+
+
+def test_the_kernel_equals_its_numpy_twin_across_the_cliffs_of_waters():
+    draw = np.random.default_rng(7)
+    face = rig("waters")
+    for _ in range(5):
+        contractions = draw.random(COUNT) * (draw.random(COUNT) < 0.4)
+        for method in METHODS:
+            expected = REFERENCE[method](face.vertices, face.muscles, contractions)
+            gap = np.abs(apply(method, contractions, "waters") - expected).max(axis=1)
+            # a vertex within rounding of a cliff may fall to either side
+            assert np.count_nonzero(gap > 1e-6) <= 2
+
+
+@pytest.mark.parametrize("falloff", FALLOFFS)
+def test_blocks_leave_out_no_vertex_that_some_contractions_move(falloff):
+    face = rig(falloff)
+    able = movable(face.vertices, face.muscles)
+    draw = np.random.default_rng(3)
+    for method in (parallel, sequential, summed):
+        contractions = draw.random(COUNT)
+        moved = (method(face.vertices, face.muscles, contractions) != face.vertices).any(axis=1)
+        assert not (moved & ~able.any(axis=0)).any()
+    packed = pack(face.vertices, face.muscles)
+    assert set(packed.vertex.ravel()) == set(np.flatnonzero(able.any(axis=0)))
+    assert packed.vertex.shape[1] == LANES
+
+
+@settings(max_examples=20, deadline=None)
+@given(contractions=CONTRACTIONS)
+def test_the_face_is_finite_and_no_vertex_goes_further_than_its_muscles_together(contractions):
+    muscles = rig().muscles
+    bound = (contractions * muscles.elasticity) @ muscles.reach
+    for method in METHODS:
+        moved = apply(method, contractions)
+        assert np.isfinite(moved).all()
+        assert (np.linalg.norm(moved - rig().vertices, axis=1) <= bound + 1e-6).all()
+
+
+@settings(max_examples=20, deadline=None)
+@given(contractions=CONTRACTIONS)
+def test_mirrored_contractions_give_the_mirrored_face(contractions):
+    swapped = contractions.reshape(-1, 2)[:, ::-1].ravel()
+    columns = 41
+    index = np.arange(len(rig().vertices)).reshape(-1, columns)[:, ::-1].ravel()
+    mirrored = apply("parallel", swapped)[index] * [-1, 1, 1]
+    assert np.abs(apply("parallel", contractions) - mirrored).max() < 1e-6
+
+
+@settings(max_examples=20, deadline=None)
+@given(muscle=st.integers(0, COUNT - 1), contraction=st.floats(0.0, STEP))
+def test_one_muscle_within_one_step_is_the_same_however_combined(muscle, contraction):
+    contractions = np.zeros(COUNT)
+    contractions[muscle] = contraction
+    one, two, three = (apply(method, contractions) for method in METHODS)
+    assert np.abs(one - two).max() < 1e-8
+    assert np.abs(one - three).max() < 1e-8
+
+
+def test_nothing_moves_where_no_muscle_reaches():
+    muscles = rig().muscles
+    outside = muscles.reach.max(axis=0) == 0.0
+    moved = apply("parallel", np.ones(COUNT))
+    assert outside.any()
+    assert moved[outside].tobytes() == rig().vertices[outside].tobytes()
+    none = dataclasses.replace(muscles, reach=np.zeros_like(muscles.reach))
+    out = np.empty_like(moved)
+    Combiner(rig().vertices, none).apply(np.ones(COUNT), out)
+    assert out.tobytes() == rig().vertices.tobytes()
+
+
+def two_muscles():
+    """Two muscles side by side that pull the same vertices up, and the row of vertices between them."""
+    points = np.column_stack([np.zeros(50), np.linspace(-0.02, 0.045, 50), np.zeros(50)]).astype(np.float32)
+    muscles = MuscleSet(
+        names=["a", "b"],
+        origin=[[-0.004, 0.05, 0], [0.004, 0.05, 0]],
+        insertion=[[-0.004, 0.0, 0], [0.004, 0.0, 0]],
+        zone=[0.7, 0.7],
+        fall_start=[0.02, 0.02],
+        fall_finish=[0.06, 0.06],
+        elasticity=[0.03, 0.03],
+        reach=np.ones((2, 50), np.float32),
+    )
+    return points, muscles
+
+
+def test_muscles_in_parallel_stay_short_of_their_origins_where_a_sum_goes_past_them():
+    points, muscles = two_muscles()
+    heights = {}
+    for method in METHODS:
+        out = np.empty_like(points)
+        Combiner(points, muscles, method).apply(np.ones(2), out)
+        heights[method] = out[:, 1].max()
+    assert heights["summed"] > 0.05 + 0.005
+    assert heights["parallel"] < 0.05
+
+
+def test_a_vertex_at_an_origin_stays_finite_in_the_kernel():
+    points, muscles = two_muscles()
+    points[0] = muscles.origin[0]
+    out = np.empty_like(points)
+    Combiner(points, muscles).apply(np.array([1.0, 0.0]), out)
+    assert np.isfinite(out).all()
+    assert out[0].tolist() == points[0].tolist()
+
+
+@pytest.mark.parametrize("bad", [np.nan, -0.1, 1.1, np.inf])
+def test_a_contraction_out_of_range_is_refused_by_name_and_changes_nothing(bad):
+    contractions = np.zeros(COUNT)
+    contractions[3] = bad
+    out = np.full_like(rig().vertices, 5.0)
+    with pytest.raises(InvalidValueError, match="contraction of zygomaticus_minor_r"):
+        combiner("parallel").apply(contractions, out)
+    assert (out == 5.0).all()
+
+
+def test_arrays_that_do_not_fit_are_refused():
+    face = rig()
+    with pytest.raises(InvalidValueError, match="contractions"):
+        combiner("parallel").apply(np.zeros(3), np.empty_like(face.vertices))
+    for out in (np.empty((5, 3), np.float32), face.vertices.astype(np.float64), np.empty_like(face.vertices).T):
+        with pytest.raises(InvalidValueError, match="out: expected float32"):
+            combiner("parallel").apply(np.zeros(COUNT), out)
+    with pytest.raises(InvalidValueError, match="rest_vertices"):
+        Combiner(face.vertices[:-1], face.muscles)
+    with pytest.raises(UnknownNameError, match="parallel"):
+        Combiner(face.vertices, face.muscles, "paralel")
