@@ -7,7 +7,7 @@ from importlib import import_module
 
 import click
 
-from agentface.errors import AgentFaceError
+from agentface.errors import AgentFaceError, DataError
 
 COMMANDS = ("render", "serve", "show", "explain", "check", "bench")
 
@@ -28,7 +28,8 @@ class _Commands(click.Group):
         try:
             return super().invoke(ctx)
         except AgentFaceError as error:
-            click.echo(f"agentface: {error}", err=True)
+            # Faults begin with file:line, which editors follow.
+            click.echo(str(error) if isinstance(error, DataError) else f"agentface: {error}", err=True)
             ctx.exit(1)
 
 

@@ -65,7 +65,7 @@ class Face:
         seed: int = 0,
         clock: Clock | None = None,
     ) -> None:
-        _check_deformer(deformer)
+        check_deformer(deformer)
         self.model = face if isinstance(face, HeadModel) else load_model(face)
         self.random = np.random.default_rng(seed)
         self.traffic = Traffic()
@@ -233,7 +233,8 @@ def check_angle(name: str, degrees: Any) -> float:
     return math.radians(check_range(f"{name}_deg", degrees, low, high))
 
 
-def _check_deformer(name: str) -> None:
+def check_deformer(name: str) -> None:
+    """Raise UnknownNameError or InvalidValueError for a deformer that this version does not have."""
     if name not in DEFORMERS:
         raise UnknownNameError("deformer", name, DEFORMERS)
     if name == "tissue":

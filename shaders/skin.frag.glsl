@@ -2,6 +2,7 @@
 #include "frame.glsl"
 #include "shading.glsl"
 #include "noise.glsl"
+#include "shadow.glsl"
 centroid in vec3 position, normal, blurred_normal, rest_position;
 centroid in vec4 matter, tint;
 centroid in float open_sky;
@@ -35,6 +36,8 @@ void main() {
     vec3 occlusion = pow(vec3(sky_light), vec3(0.72, 0.95, 1.05));
     vec3 wrap = vec3(0.36, 0.20, 0.14) * (1.0 - 0.6 * mouth);
     vec3 bump = normalize(n + 0.10 * (1.0 - wet) * (1.0 - mouth) * (noise(rest_position * 61.0).bar - 0.5));
+    float lit = mix(1.0, key_light(position, n), smoothstep(-0.05, 0.30, dot(soft, light_direction[0].xyz)) * (1.0 - mouth));
+    vec3 bled = pow(vec3(lit), vec3(0.70, 0.95, 1.05));
     vec3 diffuse = hemisphere(soft) * occlusion, gloss = vec3(0.0);
     float n_v = max(dot(bump, view), 0.02);
     float rough = mix(mix(mix(0.56, 0.44, tint.z), 0.34, lip), 0.24, max(mouth, wet));
@@ -42,10 +45,10 @@ void main() {
     for (int i = 0; i < LIGHTS; i++) {
         vec3 l = light_direction[i].xyz, h = normalize(l + view);
         vec3 cosines = vec3(dot(mix(bump, soft, 0.75), l), dot(mix(bump, soft, 0.35), l), dot(mix(bump, soft, 0.2), l));
-        diffuse += light_colour[i].rgb * wrapped(cosines, i < 2 ? wrap : vec3(0.1)) * mix(vec3(1.0), occlusion, i == 0 ? 0.75 : 1.0);
+        diffuse += light_colour[i].rgb * (i == 0 ? bled : vec3(1.0)) * wrapped(cosines, i < 2 ? wrap : vec3(0.1)) * mix(vec3(1.0), occlusion, i == 0 ? 0.75 : 1.0);
         float n_l = max(dot(bump, l), 0.0), n_h = max(dot(bump, h), 0.0), v_h = max(dot(view, h), 0.0);
         float lobes = 0.75 * ggx(n_h, rough) * visibility(n_l, n_v, rough) + 0.25 * ggx(n_h, 0.6 * rough) * visibility(n_l, n_v, 0.6 * rough);
-        gloss += light_colour[i].rgb * lobes * fresnel(f0, v_h) * n_l * PI;
+        gloss += light_colour[i].rgb * (i == 0 ? lit : 1.0) * lobes * fresnel(f0, v_h) * n_l * PI;
     }
     gloss += hemisphere(reflect(-view, bump)) * fresnel(f0, n_v) * 0.5;
     float shown = clamp(1.15 * sky_light - 0.1, 0.0, 1.0) * (1.0 - 0.85 * mouth) * (1.0 - 0.8 * tint.w) * mix(shine, 1.0, max(lip, wet));

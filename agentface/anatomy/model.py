@@ -137,8 +137,8 @@ def load_model(face: str | Path = DEFAULT_FACE, muscles: MusclesFile | None = No
         landmarks=load_landmarks(folder / "feature_points.yaml", vertices, pupils),
         eyes=eyes,
         jaw=load(folder / "jaw.yaml", JawFile),
-        lips=_load_rings(folder / "lips.yaml", LipsFile, len(vertices)),
-        eyelids=_load_rings(folder / "eyelids.yaml", EyelidsFile, len(vertices)),
+        lips=load_rings(folder / "lips.yaml", LipsFile, len(vertices)),
+        eyelids=load_rings(folder / "eyelids.yaml", EyelidsFile, len(vertices)),
         muscles_file=muscles or read_muscles(folder / "muscles.yaml"),
     )
 
@@ -152,7 +152,8 @@ def _fractions(mesh: MeshArrays, attribute: str) -> Floats:
     return mesh.attributes[attribute].astype(np.float32) / np.float32(255)
 
 
-def _load_rings(path: Path, model: type[_Rings], vertex_count: int) -> _Rings:
+def load_rings(path: Path, model: type[_Rings], vertex_count: int) -> _Rings:
+    """Read ``lips.yaml`` or ``eyelids.yaml``; raises DataError when a ring names a vertex the mesh does not have."""
     document = Document(path)
     file = document.parse(model)
     groups = file.rings.items() if isinstance(file, EyelidsFile) else [("", file.rings)]

@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 from importlib import import_module
+from inspect import signature
+from pathlib import Path
 from typing import Any
 
 from agentface.errors import UnknownNameError
+from agentface.resources import DEFAULT_FACE
 
 BENCHES: dict[str, str] = {
     "deform": "the muscles of one face, beside plain loops and a blendshape product",
@@ -14,9 +17,12 @@ BENCHES: dict[str, str] = {
 """The benchmarks and what they compare; each is a module of this package with ``run() -> dict``."""
 
 
-def run(name: str) -> dict[str, Any]:
-    """The figures of one benchmark, units in the key names; raises UnknownNameError."""
+def run(name: str, face: str | Path = DEFAULT_FACE) -> dict[str, Any]:
+    """The figures of one benchmark, units in the key names; on ``face`` where it needs one; raises UnknownNameError."""
+    from agentface.anatomy.model import load_model
+
     if name not in BENCHES:
         raise UnknownNameError("benchmark", name, tuple(BENCHES))
-    figures: dict[str, Any] = import_module(f"agentface.bench.{name}").run()
+    bench = import_module(f"agentface.bench.{name}").run
+    figures: dict[str, Any] = bench(model=load_model(face)) if "model" in signature(bench).parameters else bench()
     return figures

@@ -4,15 +4,18 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
+from functools import partial
 from statistics import median
-from typing import Any, Protocol
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from agentface.conventions import Bytes, Doubles, Floats, Indices
+from agentface.conventions import Doubles
 from agentface.deform.combine import STEP, Combiner
 from agentface.deform.normals import NormalField
-from agentface.deform.vector_muscle import MuscleSet
+
+if TYPE_CHECKING:
+    from agentface.anatomy.model import HeadModel
 
 BLENDSHAPES = 52
 """The shapes of an ARKit rig."""
@@ -20,26 +23,7 @@ ACTIVE = 8
 """Muscles of a common expression."""
 
 
-class Muscled(Protocol):
-    """What the benchmark needs of a face."""
-
-    @property
-    def vertices(self) -> Floats: ...  # noqa: D102
-
-    @property
-    def triangles(self) -> Indices: ...  # noqa: D102
-
-    @property
-    def muscles(self) -> MuscleSet: ...  # noqa: D102
-
-    @property
-    def region_of(self) -> Bytes: ...  # noqa: D102
-
-    @property
-    def muscle_regions(self) -> Any: ...  # noqa: D102
-
-
-def run(model: Muscled | None = None, rounds: int = 200) -> dict[str, Any]:
+def run(model: HeadModel | None = None, rounds: int = 200) -> dict[str, Any]:
     """Medians over interleaved rounds, in microseconds a frame, and their ratios.
 
     All muscles that act contract fully, which takes five steps: the dearest frame. ``loop_us`` is a compiled loop
@@ -62,11 +46,12 @@ def run(model: Muscled | None = None, rounds: int = 200) -> dict[str, Any]:
     some[draw.permutation(count)[:ACTIVE]] = 1.0
     combiner = Combiner(rest, model.muscles)
     constants = plain.constants(model.muscles)
-    mask = np.asarray(model.muscle_regions, dtype=np.int64)
+    region_of = model.regions.region_of
+    mask = plain.region_flags(model.muscles, region_of)
     work: tuple[Doubles, Doubles] = (np.empty(rest.shape), np.empty(rest.shape))
 
     def loops(levels: Doubles, masks: Any) -> Callable[[], Any]:
-        return lambda: plain.contract(rest, *work, constants, levels, STEP, model.region_of, masks)
+        return partial(plain.contract, rest, *work, constants, levels, STEP, region_of, masks)
 
     every = np.full(count, -1, dtype=np.int64)
     tasks: dict[str, Callable[[], Any]] = _blendshapes(rest.size, draw)
@@ -74,7 +59,7 @@ def run(model: Muscled | None = None, rounds: int = 200) -> dict[str, Any]:
     field = NormalField(model.triangles, len(rest))
     tasks["normals"] = lambda: field.compute(rest, out)
     for name, levels in (("active_8", some), ("active_all", np.ones(count))):
-        tasks[f"{name}.ours"] = lambda levels=levels: combiner.apply(levels, out)
+        tasks[f"{name}.ours"] = partial(combiner.apply, levels, out)
         tasks[f"{name}.loop"] = loops(levels, every)
         tasks[f"{name}.cutoff"] = loops(levels, mask)
     times = _interleave(tasks, rounds)

@@ -1,11 +1,11 @@
-"""The plain loops the deformer is measured against: every muscle at every vertex, as the paper's section 5 prints it."""
+"""The plain loop the deformer is measured against: every muscle at every vertex, as the paper prints it (section 5)."""
 
 from __future__ import annotations
 
 import math
-from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 from numba import njit
 
 from agentface.conventions import Bytes, Doubles, Floats
@@ -18,6 +18,14 @@ def constants(muscles: MuscleSet) -> Doubles:
     return np.column_stack([muscles.origin, muscles.axis, *columns])
 
 
+def region_flags(muscles: MuscleSet, region_of: Bytes) -> npt.NDArray[np.int64]:
+    """``(M,)``: for each muscle a bit for each region that holds a vertex it may move."""
+    flags = np.zeros(len(muscles), dtype=np.int64)
+    for region in np.unique(region_of):
+        flags[muscles.reach[:, region_of == region].any(axis=1)] |= 1 << int(region)
+    return flags
+
+
 @njit(cache=True)
 def contract(
     rest: Floats,
@@ -27,7 +35,7 @@ def contract(
     levels: Doubles,
     step: float,
     region_of: Bytes,
-    masks: Any,
+    masks: npt.NDArray[np.int64],
 ) -> None:
     """Steps of ``step`` with Waters' fall-off; ``masks (M,)`` has a bit for each region a muscle may move."""
     moved[:] = rest

@@ -22,6 +22,7 @@ class ActionUnitRow(Table):
     name: str
     muscles: Annotated[dict[str, _Contraction], Field(min_length=1)]
     shapes: Annotated[list[str], Field(min_length=1)]
+    strength: Annotated[float, Field(ge=0.7, le=1.4)] = 1.0
 
 
 class ActionUnitsFile(Table):
@@ -32,12 +33,16 @@ class ActionUnitsFile(Table):
 
 @dataclass(frozen=True, slots=True)
 class ActionUnit:
-    """An action unit: FACS number, FACS name, contractions of muscles without side, names of the artists' shapes."""
+    """An action unit: FACS number, FACS name, contractions of muscles without side, names of the artists' shapes.
+
+    ``strength`` is how much of the shapes the muscles are to make at full contraction.
+    """
 
     number: int
     name: str
     muscles: dict[str, float]
     shapes: tuple[str, ...]
+    strength: float
 
     def shape(self, model: HeadModel) -> Floats:
         """``(V, 3)`` m: the sum of the artists' shapes on a face."""
@@ -55,6 +60,6 @@ def load_action_units() -> dict[int, ActionUnit]:
                 document.fault(("action_units", number, "muscles", muscle), "a muscle without side", muscle)
     document.check()
     return {
-        number: ActionUnit(number, row.name, dict(row.muscles), tuple(row.shapes))
+        number: ActionUnit(number, row.name, dict(row.muscles), tuple(row.shapes), row.strength)
         for number, row in file.action_units.items()
     }

@@ -15,7 +15,7 @@ from agentface.anatomy.model import HeadModel
 from agentface.anatomy.muscles import Anchor, MuscleRow, MusclesFile, anchor_point, place_muscles
 from agentface.calibration.action_units import ActionUnit
 from agentface.calibration.field import ROWS, displacements
-from agentface.conventions import SIDES, Doubles
+from agentface.conventions import SIDES, Doubles, Indices
 
 _ORIGIN_WITHIN = 0.40
 _INSERTION_WITHIN = 0.25
@@ -23,6 +23,7 @@ _LOW = (*[-_ORIGIN_WITHIN] * 3, *[-_INSERTION_WITHIN] * 3, 12.0, 0.15, 0.12, 0.0
 _HIGH = (*[_ORIGIN_WITHIN] * 3, *[_INSERTION_WITHIN] * 3, 75.0, 1.8, 1.5, 0.60)
 _DIRECTION_WEIGHT = 0.55
 _OUTSIDE_WEIGHT = 0.8
+_STRETCH_WEIGHT = 0.25  # a pinch is ugly however few vertices it has
 _PEAK_WEIGHT = 1.5  # the largest displacements are what a stranger sees
 
 Progress = Callable[[str], None]
@@ -60,10 +61,19 @@ class Fitter:
         half = np.flatnonzero((model.vertices[:, 0] > -1e-6) & (self._touched() > 0))
         self._rest = model.vertices[half].astype(np.float64)
         self._reach = np.ascontiguousarray(self._reach_all[:, half])
-        self._targets = [unit.shape(model)[half].astype(np.float64) for unit in group.units]
+        self._edges, self._lengths = self._half_edges(half)
+        self._targets = [unit.strength * unit.shape(model)[half].astype(np.float64) for unit in group.units]
         self._contractions = [
             np.array([unit.muscles.get(name, 0.0) for name in group.muscles for _ in SIDES]) for unit in group.units
         ]
+
+    def _half_edges(self, half: Indices) -> tuple[Indices, Doubles]:
+        """The edges between the vertices of the left half, and their lengths as a column."""
+        place = np.full(len(self.model.vertices), -1)
+        place[half] = np.arange(len(half))
+        ends = place[np.concatenate([self.model.triangles[:, [i, (i + 1) % 3]] for i in range(3)])]
+        ends = ends[(ends[:, 0] < ends[:, 1]) & (ends.min(1) >= 0)]
+        return ends, np.linalg.norm(self._rest[ends[:, 0]] - self._rest[ends[:, 1]], axis=1, keepdims=True)
 
     def _touched(self) -> Doubles:
         shapes = sum(np.abs(unit.shape(self.model)).max(1) for unit in self.group.units)
@@ -96,7 +106,7 @@ class Fitter:
         return rows
 
     def residuals(self, values: Doubles) -> Doubles:
-        """Displacements and directions against the artists', over the larger of the shape; mild pull to the anatomy."""
+        """Displacements, directions and stretching against the artists', and a mild pull to the anatomy."""
         rows, parts = self.rows(values), []
         for target, contraction in zip(self._targets, self._contractions, strict=True):
             moved = displacements(self._rest, rows, self._reach, contraction)
@@ -108,6 +118,8 @@ class Fitter:
             parts.append(((moved - target) * scale).ravel())
             unit_moved = moved[inside] / (np.linalg.norm(moved[inside], axis=1, keepdims=True) + 0.04 * peak)
             parts.append((_DIRECTION_WEIGHT / np.sqrt(inside.sum()) * (unit_moved - target[inside] / size[inside])).ravel())
+            stretch = (moved - target)[self._edges[:, 0]] - (moved - target)[self._edges[:, 1]]
+            parts.append((_STRETCH_WEIGHT / np.sqrt(inside.sum()) * stretch / self._lengths).ravel())
         pull = (values - self.start()).reshape(-1, ROWS)[:, :6] * 0.02
         return np.concatenate([*parts, pull.ravel()])
 

@@ -7,17 +7,20 @@ from typing import Any
 
 import click
 
-from agentface.commands.options import json_option, write_json
+from agentface.commands.options import face_options, json_option, write_json
 
 
 @click.command()
 @click.argument("name", required=False)
 @json_option
-def bench(*, name: str | None, json_file: str | None) -> None:
+@face_options
+def bench(*, name: str | None, json_file: str | None, face: str, deformer: str) -> None:
     """Run one benchmark, or all: deform, fuzzy."""
     from agentface.bench import BENCHES, run
+    from agentface.face import check_deformer
 
-    figures = run(name) if name else {each: run(each) for each in BENCHES}
+    check_deformer(deformer)
+    figures = run(name, face) if name else {each: run(each, face) for each in BENCHES}
     if json_file is not None:
         write_json(json_file, figures)
         return

@@ -46,7 +46,7 @@ def pack(rest: Floats, muscles: MuscleSet) -> Blocks:
     first = np.zeros(count + 1, dtype=np.int32)
     np.cumsum(acts.sum(axis=1), out=first[1:])
     return Blocks(
-        home=np.ascontiguousarray(rest[vertex].transpose(0, 2, 1), dtype=np.float32).reshape(count, -1),
+        home=np.ascontiguousarray(rest[vertex].transpose(0, 2, 1), dtype=np.float32).reshape(count, 3 * LANES),
         vertex=vertex.astype(np.int32),
         first=first,
         owner=np.nonzero(acts)[1].astype(np.int32),

@@ -12,15 +12,13 @@ import numpy as np
 from numba import njit
 
 from agentface.conventions import Doubles, Floats, Indices
+from agentface.deform.combine import NOTHING
 
-LANES = 32
+LANES = 64
 """Vertices a block: the inner loops run over them, so that they fill whole vector registers."""
 
 # One array holds a block's positions and their changes, because the compiler then knows that they do not overlap.
 _Y, _Z, _DX, _DY, _DZ = LANES, 2 * LANES, 3 * LANES, 4 * LANES, 5 * LANES
-NOTHING = 1e-6
-"""A contraction as small as this is none: 0.6 in single precision is three steps of 0.2, not four."""
-
 _F = np.float32
 _ZERO, _HALF, _ONE = _F(0.0), _F(0.5), _F(1.0)
 _MARGIN = _F(1e-10)  # m^2, wider than rounding
@@ -102,11 +100,17 @@ def contract(
             lanes[index] = home[block, index]
         for step in range(parts.shape[0]):
             contract_block(acting, count, owner, pull, fibre, parts, step, lanes, ball)
-        for lane in range(LANES):
-            row = vertex[block, lane]
-            out[row, 0] = lanes[lane]
-            out[row, 1] = lanes[_Y + lane]
-            out[row, 2] = lanes[_Z + lane]
+        store_block(lanes, vertex, block, out)
+
+
+@njit(cache=True)
+def store_block(lanes: Floats, vertex: Indices, block: int, out: Floats) -> None:
+    """Writes the positions of one block to its vertices."""
+    for lane in range(LANES):
+        row = vertex[block, lane]
+        out[row, 0] = lanes[lane]
+        out[row, 1] = lanes[_Y + lane]
+        out[row, 2] = lanes[_Z + lane]
 
 
 @njit(cache=True, fastmath=True, error_model="numpy")
@@ -160,7 +164,8 @@ def meets(fibre: Floats, muscle: int, ball: Floats) -> bool:
         return False
     along = (x * fibre[muscle, 3] + y * fibre[muscle, 4] + z * fibre[muscle, 5]) * fibre[muscle, 14]
     aside = math.sqrt(max(square - along * along, _ZERO))
-    return aside * fibre[muscle, 13] - along * fibre[muscle, 12] <= ball[3]
+    inside: bool = aside * fibre[muscle, 13] - along * fibre[muscle, 12] <= ball[3]
+    return inside
 
 
 @njit(cache=True, fastmath=True, error_model="numpy")

@@ -76,7 +76,7 @@ class MuscleSet:
         if self.falloff not in FALLOFFS:
             raise UnknownNameError("fall-off", self.falloff, FALLOFFS)
 
-    def _check(self, name: str, good: npt.NDArray[np.bool_], expected: str, values: npt.NDArray[Any]) -> None:
+    def _check(self, name: str, good: Any, expected: str, values: npt.NDArray[Any]) -> None:
         if not good.all():
             bad = int(np.flatnonzero(~good)[0])
             value = values[bad]

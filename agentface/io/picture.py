@@ -26,5 +26,6 @@ def write_picture(path: Path, image: Bytes) -> None:
 
     check_picture_name(path)
     buffer = BytesIO()
-    Image.fromarray(image).save(buffer, _FORMATS[path.suffix.lower()])
+    # Level 4 takes half the time of the usual 6 for a file a tenth larger.
+    Image.fromarray(image).save(buffer, _FORMATS[path.suffix.lower()], compress_level=4)
     write_file(path, buffer.getvalue())

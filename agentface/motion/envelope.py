@@ -11,6 +11,8 @@ from agentface.conventions import Doubles
 
 _PEAK = 0.2
 """The largest value of the braking curve is just below this."""
+_ALMOST = 1.0 - 1e-9
+"""A move that is so far done is over: sums of frame times are not exact."""
 _MONOTONE = 2.5
 """A minimum-jerk path does not overshoot while its first speed is at most this times its mean speed."""
 _OVERSHOOT = 0.1
@@ -77,7 +79,8 @@ class Envelope:
         value = self._start + distance * path + self._speed * self._brake * braking
         self.velocity = distance / self._travel * 30.0 * u * u * (1.0 - u) ** 2
         self.velocity += self._speed * (1.0 - w) ** 2 * (1.0 + 2.0 * w - 15.0 * w * w)
-        there = (u >= 1.0) & (w >= 1.0)
+        there = (u > _ALMOST) & (w > _ALMOST)
+        self.velocity[there] = 0.0
         self.value = np.where(there, self.target, np.clip(value, self.low, self.high))
         self._settled = bool(there.all())
         return self.value
@@ -93,7 +96,7 @@ class Envelope:
         quick = np.maximum(np.abs(speed), 1e-12)
         shortened = np.minimum(_MONOTONE * np.maximum(ahead, 0.0) / quick, fade)
         beside = np.minimum(np.maximum(room, 0.0) / (_PEAK * quick), fade)
-        shorten = shortened >= beside
-        travel = np.where(shorten & (speed != 0.0), shortened, fade)
+        shorten = (ahead > 0.0) & (shortened >= beside)
+        travel = np.where(shorten, shortened, fade)
         brake = np.where(shorten, shortened, beside)
         return np.maximum(travel, 1e-6), np.maximum(brake, 1e-6)

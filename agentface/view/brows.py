@@ -73,7 +73,7 @@ def brow_hairs(model: HeadModel, normals: Floats, look: HairLook, rng: np.random
     lift = np.array([0.0010, 0.0009]) * line.scale * (0.5 + rng.random((2 * count, 1)))
     curves = flat[..., :1] * x[:, None] + flat[..., 1:] * up[:, None] + lift[..., None] * n[:, None]
     radii = (0.00017 + 0.00010 * rng.random(2 * count)) * line.scale
-    paint = np.column_stack([_shades(look.brow_colour, look.grey, 2 * count, rng), np.full(2 * count, 0.85)])
+    paint = np.column_stack([_shades(look.brow_colour, 0.4 * look.grey, 2 * count, rng), np.full(2 * count, 0.85)])
     return Hairs.grown(roots, (model.vertices, normals), curves[:, 0], curves[:, 1], radii, paint)
 
 
@@ -124,7 +124,7 @@ def _turned(directions: Doubles, angles: Doubles) -> Doubles:
 def _shades(colour: list[float], grey: float, count: int, rng: np.random.Generator) -> Doubles:
     """A colour with each hair a little lighter or darker, the part ``grey`` of them grey."""
     shades = np.asarray(colour) * (0.7 + 0.7 * rng.random((count, 1)))
-    return np.where(rng.random((count, 1)) < grey, 0.20 + 0.10 * rng.random((count, 1)), shades)
+    return np.where(rng.random((count, 1)) < grey, 0.07 + 0.05 * rng.random((count, 1)), shades)
 
 
 def _triangles_near(model: HeadModel, region: str) -> Indices:

@@ -107,7 +107,6 @@ def named_view(model: HeadModel, name: str) -> Camera:
     chin = float(model.landmarks["menton"][1])
     # the neck below the chin balances the hair above the crown
     middle = 0.5 * (crown + chin) - 0.05 * (crown - chin)
-    depth = 0.5 * float(model.landmarks["ear_front_l"][2] + model.landmarks["nose_tip"][2])
     distance = 0.5 * (crown - chin) / _HEAD_IN_PICTURE / np.tan(0.5 * _FIELD_OF_VIEW)
-    target = (0.0, middle, depth if name == "front" else 0.5 * depth)
+    target = (0.0, middle, 0.5 * float(model.vertices[:, 2].min() + model.vertices[:, 2].max()) + 0.010)
     return Camera(_from(target, yaw, pitch, distance + 0.04), target)

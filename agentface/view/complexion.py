@@ -8,8 +8,8 @@ from agentface.anatomy.model import HeadModel
 from agentface.conventions import Doubles, Floats
 
 
-def complexion(model: HeadModel) -> Floats:
-    """``(V, 4)`` 0..1: redness, tint of the eye socket, gloss of forehead and nose, scalp under hair (0 here)."""
+def complexion(model: HeadModel, covered: Floats) -> Floats:
+    """``(V, 4)`` 0..1: redness, tint of the eye socket, gloss of forehead and nose, and ``covered (V,)``: under hair."""
     at = model.landmarks
     unit = at.eye_separation
     mirrored = model.vertices * np.array([1, 1, 1], np.float32)
@@ -27,7 +27,7 @@ def complexion(model: HeadModel) -> Floats:
     socket = 0.75 * spot(eye + [0, 0.08 * unit, 0], (0.42, 0.30, 0.4)) + 0.4 * spot(eye - [0, 0.24 * unit, 0], (0.30, 0.10, 0.4))
     brow = 0.5 * (at["brow_inner_l"] + at["glabella"])
     gloss = spot(brow + [0, 0.35 * unit, 0], (0.55, 0.5, 0.8)) + spot(0.5 * (at["nasion"] + at["nose_tip"]), (0.12, 0.5, 0.6))
-    return np.clip(np.stack([red, socket, gloss, np.zeros_like(red)], axis=1), 0, 1).astype(np.float32)
+    return np.clip(np.stack([red, socket, gloss, covered], axis=1), 0, 1).astype(np.float32)
 
 
 def blurred(normals: Floats, triangles: np.typing.NDArray[np.int32], times: int) -> Floats:

@@ -33,11 +33,12 @@ class EyesLook(Table):
 
 
 class HairLook(Table):
-    """Hair of the head, brows and lashes."""
+    """Hair of the head, brows and lashes; ``hairline`` is its height as a part of the landmark hairline_middle's."""
 
     style: Literal["none", "cropped", "tied"]
     colour: _Colour
     grey: _Fraction
+    hairline: Annotated[float, Field(ge=0.7, le=1.4)]
     brow_colour: _Colour
     brow_density: Annotated[float, Field(ge=0, le=2)]
     lash_length_mm: Annotated[float, Field(ge=0, le=14)]

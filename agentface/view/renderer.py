@@ -7,23 +7,27 @@ from typing import Any
 import numpy as np
 
 from agentface.anatomy.model import HeadModel
-from agentface.conventions import Bytes
+from agentface.conventions import Bytes, Floats
 from agentface.deform.geometry import FaceGeometry
 from agentface.errors import InvalidValueError, UnknownNameError
-from agentface.view.brows import brow_hairs, lash_hairs
+from agentface.view.anchored import AnchoredArray, eye_linings
+from agentface.view.brows import BrowLine, brow_hairs, lash_hairs
 from agentface.view.camera import Camera, named_view
 from agentface.view.context import compile_program, open_context
 from agentface.view.frame import pack_frame
+from agentface.view.hair import Hairline, edge_hairs, knot_of, scalp_cap
 from agentface.view.look import Look, load_look
 from agentface.view.noise import SIDE, noise_volume
 from agentface.view.parts import Eyeball, RigidPart
 from agentface.view.refine import vertex_normals
 from agentface.view.ribbons import HairArray
+from agentface.view.shirt import shirt
 from agentface.view.skin import Skin, SkinFields
-from agentface.view.targets import Targets
+from agentface.view.targets import KeyShadow, Targets
 
 QUALITIES: dict[str, int] = {"fast": 0, "portrait": 4}
 """Name of a quality: samples a pixel (0: one, not resolved)."""
+SHADOW_TAPS = {"fast": 4, "portrait": 16}
 LARGEST_SIDE = 8192
 _SEED = 20
 _FRAME_BYTES = 3 * 64 + 11 * 16
@@ -50,18 +54,35 @@ class Renderer:
         rng = np.random.default_rng(_SEED)
         self._noise = self.context.texture3d((SIDE,) * 3, 4, noise_volume(rng).tobytes())
         self._programs = {name: self._compile(f"{name}.vert.glsl", f"{name}.frag.glsl") for name in ("skin", "part", "eye", "ribbon")}
+        self._programs["lining"] = self._compile("anchored.vert.glsl", "part.frag.glsl")
+        self._programs["cap"] = self._compile("anchored.vert.glsl", "cap.frag.glsl")
+        self._depth = self._compile("depth.vert.glsl", None)
         self._develop = self._compile("screen.vert.glsl", "develop.frag.glsl")
         self._screen = self.context.vertex_array(self._develop, [])
         self._fields = SkinFields(self.context, len(model.vertices))
-        self._skins = {name: Skin(self.context, self._programs["skin"], model, fine=samples > 0) for name, samples in QUALITIES.items()}
+        covered = self._covered()
+        self._skins = {
+            name: Skin(self.context, self._programs["skin"], self._depth, model, covered, fine=samples > 0)
+            for name, samples in QUALITIES.items()
+        }
+        self._shadow = KeyShadow(self.context)
         self._parts = {name: self._part(name) for name in ("teeth_upper", "teeth_lower", "tongue")}
         self._eyes = [Eyeball(self.context, self._programs["eye"], model, side) for side in "lr"]
+        self._parts["shirt"] = self._shirt()
+        self._linings = [AnchoredArray(self.context, self._programs["lining"], mesh, model.vertices) for mesh in eye_linings(model)]
         normals = vertex_normals(model.vertices, model.triangles)
         hair = self.look.hair
         self._hairs = [
             HairArray(self.context, self._programs["ribbon"], brow_hairs(model, normals, hair, rng), 0.35),
             HairArray(self.context, self._programs["ribbon"], lash_hairs(model, normals, hair, rng), 0.1),
         ]
+        self._cap = None
+        if hair.style != "none":
+            line = Hairline(model, hair.hairline)
+            self._cap = AnchoredArray(self.context, self._programs["cap"], scalp_cap(model, line, hair), model.vertices)
+            edge = edge_hairs(model, normals, line, hair, rng)
+            if len(edge):
+                self._hairs.append(HairArray(self.context, self._programs["ribbon"], edge, 0.5))
         self._set_look()
 
     def render(
@@ -98,12 +119,17 @@ class Renderer:
         self._fields.update(geometry)
         self._fields.texture.use(0)
         self._noise.use(1)
+        self._shadow.draw(self._skins["fast"].outline)
+        self._shadow.use(2)
+        _set(self._programs["skin"], {"shadow_taps": SHADOW_TAPS[quality]})
         targets.scene.use()
         targets.scene.clear(0.0, 0.0, 0.0, 0.0)
         context.enable_only(moderngl.DEPTH_TEST)
         self._draw_solids(geometry, quality)
         context.enable_only(moderngl.DEPTH_TEST | moderngl.BLEND)
         context.blend_func = (moderngl.SRC_ALPHA, moderngl.ONE_MINUS_SRC_ALPHA, moderngl.ONE, moderngl.ONE_MINUS_SRC_ALPHA)
+        if self._cap is not None:
+            self._cap.draw()
         for hairs in self._hairs:
             hairs.draw()
         if targets.samples:
@@ -120,12 +146,15 @@ class Renderer:
         self._parts["teeth_upper"].draw(geometry.head)
         for name in ("teeth_lower", "tongue"):
             self._parts[name].draw(geometry.head @ geometry.jaw)
+        self._parts["shirt"].draw(np.eye(4, dtype=np.float32))
+        for lining in self._linings:
+            lining.draw()
         for eye in self._eyes:
             eye.draw(geometry)
 
-    def _compile(self, vertex: str, fragment: str) -> Any:
+    def _compile(self, vertex: str, fragment: str | None) -> Any:
         program = compile_program(self.context, vertex, fragment)
-        for name, slot in (("skin_fields", 0), ("noise_volume", 1), ("light", 0)):
+        for name, slot in (("skin_fields", 0), ("noise_volume", 1), ("light", 0), ("key_depth", 2)):
             if name in program:
                 program[name].value = slot
         if "Frame" in program:
@@ -138,12 +167,27 @@ class Renderer:
         material[:, 3] = 0.0
         return RigidPart(self.context, self._programs["part"], mesh.attributes["POSITION"], mesh.triangles, material)
 
+    def _covered(self) -> Floats:
+        hair, model = self.look.hair, self.model
+        covered = 0.55 * hair.brow_density * BrowLine(model).density(model.vertices)
+        if hair.style != "none":
+            covered = np.maximum(covered, np.clip((Hairline(model, hair.hairline).over(model) + 0.003) / 0.012, 0, 1))
+        return np.clip(covered, 0, 1).astype(np.float32)
+
+    def _shirt(self) -> RigidPart:
+        vertices, triangles = shirt(self.model)
+        material = np.tile(np.array([0, 0, 0, 1], np.float32), (len(vertices), 1))
+        return RigidPart(self.context, self._programs["part"], vertices, triangles, material)
+
     def _set_look(self) -> None:
         look, front = self.look, float(self.model.landmarks["upper_lip_middle"][2])
         values: dict[str, dict[str, Any]] = {
             "skin": {"skin_tone": look.skin.tone, "lip_tint": look.skin.lips, "shine": look.skin.shine, "mouth_front": front,
                      "hair_colour": look.hair.colour},
             "part": {"mouth_front": front, "cloth": look.cloth},
+            "lining": {"mouth_front": front, "cloth": look.cloth},
+            "cap": {"hair_colour": look.hair.colour, "knot": knot_of(self.model).tolist(), "grey": look.hair.grey,
+                    "cropped": float(look.hair.style == "cropped")},
             "eye": {"iris_inner": look.eyes.iris_inner, "iris_outer": look.eyes.iris_outer, "sclera": look.eyes.sclera,
                     "pupil_radius": look.eyes.pupil, "iris_radius": 0.445},
         }  # fmt: skip

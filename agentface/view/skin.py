@@ -42,7 +42,7 @@ class SkinFields:
 class Skin:
     """The skin's static buffers, as it is or (``fine``) with every triangle cut into four curved ones."""
 
-    def __init__(self, context: Any, program: Any, model: HeadModel, *, fine: bool) -> None:
+    def __init__(self, context: Any, program: Any, depth_program: Any, model: HeadModel, covered: Floats, *, fine: bool) -> None:
         count = len(model.vertices)
         mesh = refine(model.triangles, count) if fine else unrefined(model.triangles, count)
         normals = vertex_normals(model.vertices, model.triangles)
@@ -51,13 +51,15 @@ class Skin:
             ("soft_normal", blurred(normals, model.triangles, _BLUR)),
             ("rest_normal", normals),
             ("material", model.material),
-            ("complexion", complexion(model)),
+            ("complexion", complexion(model, covered)),
             ("ambient", model.shade[:, :1]),
         )
         layout = [(context.buffer(mesh.ends.tobytes()), "2i", "ends")]
         for name, field in fields:
             layout.append((context.buffer(mesh.mean(field).tobytes()), f"{field.shape[1]}f", name))
-        self.array = context.vertex_array(program, layout, context.buffer(mesh.triangles.astype(np.int32).tobytes()))
+        triangles = context.buffer(mesh.triangles.astype(np.int32).tobytes())
+        self.array = context.vertex_array(program, layout, triangles)
+        self.outline = context.vertex_array(depth_program, layout[:1], triangles)
 
     def draw(self) -> None:
         """Draw it where ``SkinFields`` has it."""

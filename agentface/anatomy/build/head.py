@@ -19,7 +19,7 @@ from agentface.conventions import Doubles, Indices
 
 _FACE, _BAG, _BODY, _SOCKETS = 0, 1, 2, {"r": 3, "l": 6}
 _NECK_BOTTOM = 5.6
-_THINNED = 560
+_THINNED, _THINNED_EARS = 170, 100
 _SMALLEST_OFFSET = 5e-6
 METRES = 0.1
 
@@ -96,7 +96,9 @@ class HeadTopology:
         free[np.unique(skin.triangles[~rest[skin.triangles].all(1)])] = False
         free[[self._index_of(vertex) for vertex in _EXACT.values()]] = False
         half = skin.triangles[: len(skin.triangles) // 2]
-        left = Thinner(self.points, half, free).run(_THINNED)
+        ear = np.abs(self.points[:, 0]) > 0.68
+        left = Thinner(self.points, half, free & ~ear).run(_THINNED)
+        left = Thinner(self.points, left, free & ear).run(_THINNED_EARS)
         skin.keep(np.concatenate([left, skin.mirror[left[:, ::-1]]]))
 
     def _indicator(self, vertices: Indices, values: float = 1.0) -> Doubles:

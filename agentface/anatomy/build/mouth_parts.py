@@ -12,6 +12,9 @@ from agentface.conventions import Doubles, Indices
 # Mean mesiodistal widths and crown heights in millimetres, from the middle outward (Wheeler's dental anatomy).
 _UPPER = ((8.5, 10.5), (6.5, 9.0), (7.5, 10.0), (7.0, 8.5), (7.0, 8.5), (9.5, 7.5), (9.0, 7.0))
 _LOWER = ((5.2, 9.0), (5.6, 9.2), (6.8, 10.0), (7.0, 8.5), (7.1, 8.0), (10.0, 7.5), (9.5, 7.0))
+# The base mesh's strips are wider than an arch of single teeth, and its lower strip reaches high behind the upper one:
+# incisors overlap by two to three millimetres, and a parted mouth shows the edges of the upper ones.
+_ARCH_WIDTH, _SHOW_UPPER, _SINK_LOWER = 0.86, 0.016, 0.052
 _AROUND, _ALONG = 10, 4
 
 
@@ -26,13 +29,13 @@ class PartMesh:
 
 def dental_arch(strip: Doubles, *, upper: bool) -> PartMesh:
     """Fourteen teeth and their gum, fitted to the vertices ``strip (S, 3)`` of the base mesh's row of teeth."""
-    half_width = np.abs(strip[:, 0]).max() * 0.96
+    half_width = np.abs(strip[:, 0]).max() * _ARCH_WIDTH
     back, front = strip[:, 2].min(), strip[:, 2].max() - 0.02
     depth = front - back
     turn = np.linspace(0.0, 0.5 * np.pi, 400)
     arch = np.stack([half_width * np.sin(turn), back + depth * np.cos(turn) ** 0.8], 1)
     length = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(arch, axis=0), axis=1))])
-    edge = strip[:, 1].min() if upper else strip[:, 1].max()
+    edge = strip[:, 1].min() - _SHOW_UPPER if upper else strip[:, 1].max() - _SINK_LOWER
     table = np.array(_UPPER if upper else _LOWER) / 100.0
     table[:, 0] *= min(1.0, length[-1] * 0.98 / table[:, 0].sum())
     out = 1.0 if upper else -1.0
@@ -76,9 +79,10 @@ def _gum(arch: Doubles, edge: float, out: float) -> PartMesh:
     normal *= np.sign(normal[len(normal) // 2, 1])
     profile = ((0.030, 0.072), (0.052, 0.095), (0.058, 0.13), (0.040, 0.18), (-0.05, 0.18), (-0.05, 0.08))
     rows = []
+    short = 1.0 if out > 0 else 0.62  # below the lower incisors the chin leaves little room
     for offset, height in profile:
         flat = path + normal * offset
-        rows.append(np.stack([flat[:, 0], np.full(len(flat), edge + out * height), flat[:, 1]], 1))
+        rows.append(np.stack([flat[:, 0], np.full(len(flat), edge + out * short * height), flat[:, 1]], 1))
     positions = np.concatenate(rows)
     faces = np.array(_tube(len(path), len(profile), closed=False), np.int32)
     faces = faces if out > 0 else faces[:, ::-1]

@@ -10,9 +10,9 @@ import numpy as np
 
 from agentface.conventions import Doubles, Indices
 
-_DIRECTIONS = 72
-_PIXEL = 0.0019
-_SPACING = 0.0015
+_DIRECTIONS = 56
+_PIXEL = 0.0023
+_SPACING = 0.0019
 _CLEARANCE = 0.0030
 
 

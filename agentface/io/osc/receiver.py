@@ -9,6 +9,7 @@ from typing import Any, TypeAlias
 from agentface.errors import AgentFaceError, InvalidValueError
 from agentface.face import Face
 from agentface.io.osc.agenda import FURTHEST_S, MOST, Agenda
+from agentface.io.osc.allowance import Allowance
 from agentface.io.osc.codec import MalformedError, Message, address_of, decode, encode
 from agentface.io.osc.commands import (
     PREFIX,
@@ -30,15 +31,16 @@ class Receiver:
     """Applies datagrams to a face, a whole frame's worth at a time.
 
     Of commands of the same kind (the same address and name) only the newest is applied: a flood costs decoding,
-    never a queue. Answers go through ``reply``; at most 200 at once and 100 a second are sent over all senders, the
-    rest are dropped, so that forged senders cannot turn the server into a flood of its own. ``status`` is answered
-    once a frame and sender.
+    never a queue. Answers go through ``reply``. Over all senders, at most 200 errors at once and then 100 a second
+    are answered, and as many requests for the status, of each sender one a frame: forged senders cannot turn the
+    server into a flood of its own, and errors do not keep the status from those who ask for it.
     """
 
     def __init__(self, face: Face, reply: Callable[[bytes, Sender], None], clock: Clock) -> None:
         self._face, self._reply, self._clock = face, reply, clock
         self._agenda = Agenda()
-        self._allowance, self._counted = ANSWERS_AT_ONCE, clock.now()
+        self._errors = Allowance(clock, ANSWERS_AT_ONCE, ANSWERS_A_SECOND)
+        self._statuses = Allowance(clock, ANSWERS_AT_ONCE, ANSWERS_A_SECOND)
 
     def take(self, datagrams: Iterable[tuple[bytes, Sender]]) -> None:
         """Take in datagrams and what has come due; then answer those who asked for the status."""
@@ -57,7 +59,8 @@ class Receiver:
         for command in newest.values():
             command.apply(self._face)
         for sender in askers:
-            self._answer(encode(f"{PREFIX}{STATUS}", json.dumps(self._face.status(), allow_nan=False)), sender)
+            if self._statuses.take():
+                self._reply(encode(f"{PREFIX}{STATUS}", json.dumps(self._face.status(), allow_nan=False)), sender)
 
     def _take_one(
         self,
@@ -95,15 +98,8 @@ class Receiver:
 
     def _refuse(self, kind: str, sender: Sender, address: str, reason: str, hint: str) -> None:
         self._face.traffic.errors[kind] += 1
-        self._answer(encode(f"{PREFIX}error", address[:200], reason, hint[:400]), sender)
-
-    def _answer(self, packet: bytes, sender: Sender) -> None:
-        now = self._clock.now()
-        self._allowance = min(ANSWERS_AT_ONCE, self._allowance + ANSWERS_A_SECOND * (now - self._counted))
-        self._counted = now
-        if self._allowance >= 1.0:
-            self._allowance -= 1.0
-            self._reply(packet, sender)
+        if self._errors.take():
+            self._reply(encode(f"{PREFIX}error", address[:200], reason, hint[:400]), sender)
 
 
 def _put(newest: dict[tuple[str, ...], Command], command: Command) -> None:

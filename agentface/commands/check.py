@@ -1,0 +1,123 @@
+"""``agentface check``: every fault of data files, with file and line."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import click
+
+from agentface.errors import DataError, Fault, UnknownNameError
+
+_Reader = Callable[[Path], object]
+
+
+@click.command()
+@click.argument("files", nargs=-1, type=click.Path(path_type=Path), metavar="[FILE|FOLDER]...")
+@click.option("--face", metavar="NAME|PATH", help="A face to check.")
+@click.option("--deformer", type=click.Choice(["geometric", "tissue"]), default="geometric", show_default=True)
+def check(*, files: tuple[Path, ...], face: str | None, deformer: str) -> None:
+    """Check rules and faces: files, folders, or, if none is named, all that come with agentface.
+
+    Prints every fault with file and line; the exit code is 1 if there is any.
+    """
+    from agentface.face import check_deformer
+    from agentface.resources import face_folder
+
+    check_deformer(deformer)
+    places = [*files, *([face_folder(face)] if face else [])] or _shipped()
+    faults: list[Fault] = []
+    for place in places:
+        found = list(dict.fromkeys(_faults(place)))
+        faults += found
+        click.echo(f"{place}: {len(found)} faults" if found else f"{place}: good")
+    if faults:
+        raise DataError(faults)
+
+
+def _shipped() -> list[Path]:
+    from agentface.resources import data_folder, face_folder, face_names
+
+    return [data_folder("rules"), *(face_folder(name) for name in face_names())]
+
+
+def _faults(place: Path) -> list[Fault]:
+    if not place.exists():
+        return [Fault(place, None, "", "a file or a folder", "nothing")]
+    if not place.is_dir():
+        return _faults_of_file(place)
+    names = {path.name for path in place.iterdir()}
+    if names & set(_rule_readers()):
+        return [fault for name in _rule_readers() for fault in _faults_of_file(place / name)]
+    if not names & {"head.glb", *_face_readers()}:
+        return [Fault(place, None, "", "a folder with rules or a face", "neither")]
+    found = [fault for name in _face_readers() for fault in _faults_of_file(place / name)]
+    return found or _faults_of(lambda: _whole_face(place))
+
+
+def _faults_of_file(path: Path) -> list[Fault]:
+    readers = _rule_readers() | _face_readers()
+    if path.name not in readers:
+        raise UnknownNameError("data file", path.name, tuple(readers))
+    return _faults_of(lambda: readers[path.name](path))
+
+
+def _faults_of(read: Callable[[], object]) -> list[Fault]:
+    try:
+        read()
+    except DataError as error:
+        return list(error.faults)
+    return []
+
+
+def _rule_readers() -> dict[str, _Reader]:
+    from agentface.emotion.tables import load_blends, load_emotions
+
+    return {"emotions.yaml": load_emotions, "blends.yaml": load_blends}
+
+
+def _face_readers() -> dict[str, _Reader]:
+    from agentface.anatomy.glb import read_glb
+    from agentface.anatomy.model import EyelidsFile, EyesFile, JawFile, LipsFile, load_rings
+    from agentface.anatomy.muscles import read_muscles
+    from agentface.anatomy.regions import load_regions
+    from agentface.config import load
+    from agentface.view.look import read_look
+
+    return {
+        "head.glb": read_glb,
+        "regions.yaml": lambda path: load_regions(path, _vertex_count(path)),
+        "muscles.yaml": read_muscles,
+        "feature_points.yaml": _read_landmarks,
+        "lips.yaml": lambda path: load_rings(path, LipsFile, _vertex_count(path)),
+        "eyelids.yaml": lambda path: load_rings(path, EyelidsFile, _vertex_count(path)),
+        "jaw.yaml": lambda path: load(path, JawFile),
+        "eyes.yaml": lambda path: load(path, EyesFile),
+        "look.yaml": read_look,
+    }
+
+
+def _read_landmarks(path: Path) -> object:
+    import numpy as np
+
+    from agentface.anatomy.landmarks import load_landmarks
+    from agentface.conventions import SIDES
+
+    vertices = np.zeros((_vertex_count(path), 3), np.float32)
+    return load_landmarks(path, vertices, {f"pupil_{side}": np.zeros(3, np.float32) for side in SIDES})
+
+
+def _vertex_count(beside: Path) -> int:
+    from agentface.anatomy.glb import read_glb
+
+    path = beside.parent / "head.glb"
+    meshes = read_glb(path)
+    if "skin" not in meshes:
+        raise DataError([Fault(path, None, "skin", "a mesh of this name", "none")])
+    return len(meshes["skin"].attributes["POSITION"])
+
+
+def _whole_face(folder: Path) -> object:
+    from agentface.anatomy.model import load_model
+
+    return load_model(folder).muscles

@@ -1,0 +1,77 @@
+"""What ``make demo`` runs: a sheet of expressions, and a film of a face that a separate process drives over OSC."""
+
+from __future__ import annotations
+
+import argparse
+import signal
+import socket
+import subprocess
+import sys
+from pathlib import Path
+
+from PIL import Image, ImageDraw, ImageFont
+
+from agentface import EMOTIONS, AgentFaceError, Face
+
+HERE = Path(__file__).resolve().parent
+TILE = 480
+LABEL = 56
+
+
+def draw_expressions(path: Path) -> None:
+    """The neutral face and the six emotions at full strength, each with its name."""
+    face = Face()
+    sheet = Image.new("RGB", (4 * TILE, 2 * (TILE + LABEL)), "#14181c")
+    pen = ImageDraw.Draw(sheet)
+    for place, name in enumerate(("neutral", *EMOTIONS)):
+        face.set_emotion({} if name == "neutral" else {name: 1.0}, fade=0.0)
+        left, top = TILE * (place % 4), (TILE + LABEL) * (place // 4)
+        sheet.paste(Image.fromarray(face.render((TILE, TILE))), (left, top))
+        middle = (left + TILE / 2, top + TILE + LABEL / 2)
+        pen.text(middle, name, "#e8e4dc", ImageFont.load_default(26), anchor="mm")
+    sheet.save(path)
+
+
+def film_agent(path: Path, pace: float) -> None:
+    """A running server films its face while the agent of another process tells it what to feel."""
+    port = free_port()
+    command = [sys.executable, "-m", "agentface", "serve", "--osc", f"127.0.0.1:{port}", "--record", str(path)]
+    with subprocess.Popen([*command, "--size", "720x720"]) as server:  # noqa: S603  # our own program
+        try:
+            agent = [sys.executable, str(HERE / "osc_agent.py"), "--osc", f"127.0.0.1:{port}", "--wait", "120"]
+            subprocess.run([*agent, "--pace", str(pace)], check=True)  # noqa: S603  # our own program
+        finally:
+            server.send_signal(signal.SIGINT)
+    if server.returncode:
+        raise SystemExit(f"agentface serve ended with code {server.returncode}")
+
+
+def free_port() -> int:
+    """A UDP port that nobody has."""
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
+        probe.bind(("127.0.0.1", 0))
+        return int(probe.getsockname()[1])
+
+
+def main() -> None:
+    """Run the example."""
+    parser = argparse.ArgumentParser(description="Make out/expressions.png and out/demo.mp4.")
+    parser.add_argument("--out", type=Path, default=Path("out"))
+    parser.add_argument("--pace", type=float, default=1.0)
+    options = parser.parse_args()
+
+    options.out.mkdir(parents=True, exist_ok=True)
+    try:
+        draw_expressions(options.out / "expressions.png")
+    except AgentFaceError as error:
+        raise SystemExit(str(error)) from error
+    film_agent(options.out / "demo.mp4", options.pace)
+    print(f"\n{options.out / 'expressions.png'}: the neutral face and the six emotions")
+    print(f"{options.out / 'demo.mp4'}: an agent in another process talks OSC to the face")
+    print("\nFor a live window:           agentface show      (keys 1 to 6 raise an emotion each)")
+    print("For one that takes OSC:      agentface serve --view window")
+    print("and in a second terminal:    python examples/osc_agent.py")
+
+
+if __name__ == "__main__":
+    main()

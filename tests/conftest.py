@@ -1,0 +1,7 @@
+from __future__ import annotations
+
+from hypothesis import settings
+
+# The same examples in every run, and no verdict by the clock: a busy machine fails nothing.
+settings.register_profile("agentface", deadline=None, derandomize=True)
+settings.load_profile("agentface")

@@ -1,0 +1,254 @@
+from __future__ import annotations
+
+import json
+import math
+
+import numpy as np
+import pytest
+from osc_bytes import bundle, message
+
+from agentface import EmotionState, Face, load_model
+from agentface.io.osc.agenda import FURTHEST_S, MOST
+from agentface.io.osc.codec import decode
+from agentface.io.osc.receiver import ANSWERS_A_SECOND, ANSWERS_AT_ONCE, Receiver
+from agentface.motion.clock import ManualClock
+
+ME = ("127.0.0.1", 1)
+
+
+class Desk:
+    """A receiver on a clock of its own, with what it answered."""
+
+    def __init__(self, model):
+        self.clock = ManualClock()
+        self.face = Face(model, clock=self.clock)
+        self.answers = []
+        self.receiver = Receiver(self.face, lambda packet, sender: self.answers.append((packet, sender)), self.clock)
+
+    def take(self, *packets, sender=ME):
+        self.receiver.take([(packet, sender) for packet in packets])
+
+    def said(self):
+        """The answers since the last call, decoded."""
+        said = [decode(packet)[0] for packet, _ in self.answers]
+        self.answers.clear()
+        return said
+
+    @property
+    def state(self):
+        return self.face.explain().state
+
+
+@pytest.fixture(scope="module")
+def model():
+    return load_model()
+
+
+@pytest.fixture
+def desk(model):
+    return Desk(model)
+
+
+def test_emotion_with_fade_and_hold(desk):
+    desk.take(message("/agentface/emotion", "sfff", "joy", 0.5, 0.1, 0.2))
+    assert desk.state == EmotionState.of(happiness=0.5)
+    desk.face.step(0.29)
+    assert desk.face.status()["shown"]["emotion"]["happiness"] == 0.5
+    desk.face.step(0.2)
+    assert desk.state == EmotionState()
+    assert not desk.answers
+
+
+def test_emotion_keeps_the_others_and_emotions_does_not(desk):
+    desk.take(message("/agentface/emotion", "sf", "anger", 0.25))
+    desk.take(message("/agentface/emotion", "sf", "fear", 0.5))
+    assert desk.state == EmotionState.of(anger=0.25, fear=0.5)
+    desk.take(message("/agentface/emotions", "sfsf", "disgust", 0.75, "sad", 0.5))
+    assert desk.state == EmotionState.of(disgust=0.75, sadness=0.5)
+    desk.take(message("/agentface/neutral"))
+    assert desk.state == EmotionState()
+
+
+def test_muscle_gaze_head_blink_and_whole_numbers(desk):
+    desk.take(
+        message("/agentface/muscle", "sf", "zygomaticus_major_l", 0.5),
+        message("/agentface/muscle", "si", "jaw_open", 1),
+        message("/agentface/gaze", "fff", 10, -5, 0),
+        message("/agentface/head", "ffd", 20, 5, 3),
+        message("/agentface/blink"),
+    )
+    desk.face.step(0.09)
+    assert desk.face.pose["orbicularis_oculi_palpebralis_l"] == 1.0
+    desk.face.step(1.0)
+    pose = desk.face.pose
+    assert pose["zygomaticus_major_l"] == 0.5
+    assert pose["zygomaticus_major_r"] == 0.0
+    assert pose["jaw_open"] == 1.0
+    assert desk.face.status()["gaze_deg"] == [10, -5]
+    assert math.degrees(pose["head_yaw"]) == pytest.approx(20)
+    assert desk.face.traffic.messages == 5
+
+
+def test_neutral_takes_its_fade(desk):
+    desk.take(message("/agentface/emotion", "sff", "joy", 1.0, 0.0), message("/agentface/neutral", "f", 2.0))
+    desk.face.step(1.0)
+    assert desk.face.status()["shown"]["emotion"]["happiness"] == pytest.approx(0.5)
+
+
+@pytest.mark.parametrize(
+    ("packet", "reason"),
+    [
+        (message("/agentface/emotion", "sf", "hapiness", 0.5), "hapiness"),
+        (message("/agentface/emotion", "sf", "joy", math.nan), "finite"),
+        (message("/agentface/emotion", "sf", "joy", math.inf), "finite"),
+        (message("/agentface/emotion", "sf", "joy", 1.5), "0..1"),
+        (message("/agentface/emotion", "sf", "joy", -0.5), "0..1"),
+        (message("/agentface/emotion", "ss", "joy", "much"), "number"),
+        (message("/agentface/emotion", "ff", 0.5, 0.5), "emotion"),
+        (message("/agentface/emotion", "s", "joy"), "name intensity"),
+        (message("/agentface/emotion"), "name intensity"),
+        (message("/agentface/emotion", "sffff", "joy", 1, 1, 1, 1), "name intensity"),
+        (message("/agentface/emotion", "sff", "joy", 0.5, -1.0), "seconds"),
+        (message("/agentface/emotion", "sfff", "joy", 0.5, 1.0, math.nan), "finite"),
+        (message("/agentface/emotions"), "pairs"),
+        (message("/agentface/emotions", "sfs", "joy", 0.5, "fear"), "pairs"),
+        (message("/agentface/emotions", "sfsf", "fear", 0.5, "nothing", 0.5), "nothing"),
+        (message("/agentface/emotions", "sfsf", "joy", 0.5, "happy", 0.5), "once"),
+        (message("/agentface/emotions", "sfsf", "fear", 0.5, "joy", 2.0), "0..1"),
+        (message("/agentface/neutral", "s", "now"), "number"),
+        (message("/agentface/muscle", "sf", "biceps", 0.5), "biceps"),
+        (message("/agentface/muscle", "sf", "gaze_yaw", 0.5), "gaze_yaw"),
+        (message("/agentface/muscle", "sf", "risorius", 7.0), "0..1"),
+        (message("/agentface/muscle", "fs", 0.5, "risorius"), "muscle"),
+        (message("/agentface/gaze", "ff", 80, 0), "-50..50"),
+        (message("/agentface/gaze", "f", 80), "yaw_deg"),
+        (message("/agentface/head", "ff", 1, 2), "roll"),
+        (message("/agentface/blink", "f", 2), "no arguments"),
+        (bundle(message("/agentface/emotion", "sf", "joy", 0.5), date=2e9), "ahead"),
+        (bundle(message("/agentface/emotion", "sf", "joy", 0.5), date=1_000_000_000.0 + FURTHEST_S + 1), "ahead"),
+    ],
+)
+def test_a_wrong_message_is_answered_and_changes_nothing(desk, packet, reason):
+    desk.take(message("/agentface/emotion", "sff", "sadness", 0.5, 0))
+    before = desk.face.status()
+    desk.take(packet)
+    (answer,) = desk.said()
+    address, said, hint = answer.arguments
+    assert answer.address == "/agentface/error"
+    assert packet.partition(b"\0")[0].decode() in (address, "#bundle")
+    assert reason in said + hint
+    after = desk.face.status()
+    assert after["errors"] == {"malformed": 0, "unknown": 0, "rejected": 1}
+    assert after | {"errors": before["errors"]} == before
+    desk.face.step(1000.0)
+    assert desk.state == EmotionState.of(sadness=0.5)
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_200_kb_of_garbage_is_counted_and_answered(desk, seed):
+    desk.take(message("/agentface/emotion", "sf", "sadness", 0.5))
+    source = np.random.default_rng(seed)
+    packets = [source.bytes(source.choice([1, 3, 17, 400, 1472, 8193])) for _ in range(300)]
+    assert sum(map(len, packets)) > 200_000
+    desk.take(*packets)
+    assert desk.face.traffic.errors == {"malformed": 300, "unknown": 0, "rejected": 0}
+    assert desk.state == EmotionState.of(sadness=0.5)
+    answers = desk.said()
+    assert {answer.address for answer in answers} == {"/agentface/error"}
+    assert len(answers) == ANSWERS_AT_ONCE
+    desk.take(message("/agentface/status"))
+    assert desk.said()[0].address == "/agentface/status"
+
+
+@pytest.mark.parametrize(
+    "address",
+    ["/other/emotion", "/agentface", "/agentface/", "/agentface/viseme", "/agentface/onyx/emotion", "/agentface/*"],
+)
+def test_unknown_addresses_are_counted_and_not_answered(desk, address):
+    desk.take(message(address, "sf", "joy", 0.5))
+    assert desk.face.traffic.errors == {"malformed": 0, "unknown": 1, "rejected": 0}
+    assert not desk.answers
+    assert desk.state == EmotionState()
+
+
+def test_the_face_has_a_name_of_its_own(desk):
+    desk.take(message("/agentface/amber/emotion", "sf", "joy", 0.5))
+    assert desk.state == EmotionState.of(happiness=0.5)
+
+
+def test_status_is_answered_after_what_came_before_it(desk):
+    desk.take(
+        message("/agentface/status"), message("/agentface/emotion", "sf", "joy", 0.5), message("/agentface/status")
+    )
+    (answer,) = desk.said()
+    status = json.loads(answer.arguments[0])
+    assert answer.address == "/agentface/status"
+    assert status["emotion"]["happiness"] == 0.5
+    assert list(status) == list(desk.face.status())
+    assert status["messages"] == 3
+
+
+def test_every_sender_gets_its_status(desk):
+    for port in range(3):
+        desk.receiver.take([(message("/agentface/status"), ("127.0.0.1", port))] * 5)
+    assert [sender for _, sender in desk.answers] == [("127.0.0.1", port) for port in range(3)]
+
+
+def test_the_newest_wins_and_order_is_kept(desk):
+    many = [message("/agentface/emotion", "sf", "joy", number / 1000) for number in range(1000)]
+    desk.take(*many, message("/agentface/neutral"), message("/agentface/emotion", "sf", "fear", 0.25))
+    assert desk.state == EmotionState.of(fear=0.25)
+    desk.take(message("/agentface/emotions", "sf", "anger", 0.5), message("/agentface/emotion", "sf", "joy", 0.125))
+    assert desk.state == EmotionState.of(anger=0.5, happiness=0.125)
+
+
+def test_a_bundle_with_one_malformed_part_does_nothing(desk):
+    desk.take(
+        bundle(message("/agentface/emotion", "sf", "joy", 0.5), message("/agentface/emotion", "sf", "fear", 0.5)[:-4])
+    )
+    assert desk.state == EmotionState()
+    assert desk.face.traffic.errors["malformed"] == 1
+
+
+def test_bundles_play_at_their_time_in_their_order(desk):
+    now = desk.clock.date()
+    desk.take(
+        bundle(message("/agentface/emotion", "sf", "joy", 0.75), date=now + 2),
+        bundle(message("/agentface/emotion", "sf", "joy", 0.25), date=now + 1),
+        bundle(message("/agentface/emotion", "sf", "joy", 0.125), date=now - 3600),
+    )
+    assert desk.state["happiness"] == 0.125
+    seen = []
+    for _ in range(5):
+        desk.clock.sleep(0.5)
+        desk.take()
+        seen.append(desk.state["happiness"])
+    assert seen == [0.125, 0.25, 0.25, 0.75, 0.75]
+
+
+def test_a_wrong_message_in_a_later_bundle_is_answered_now(desk):
+    desk.take(bundle(message("/agentface/emotion", "sf", "joi", 0.75), date=desk.clock.date() + 2))
+    assert desk.said()[0].arguments[0] == "/agentface/emotion"
+
+
+def test_the_agenda_is_bounded(desk):
+    packet = bundle(*[message("/agentface/blink")] * 200, date=desk.clock.date() + 5)
+    desk.take(*[packet] * (MOST // 200 + 2))
+    assert desk.face.traffic.errors["rejected"] == (MOST // 200 + 2) * 200 - MOST
+    assert desk.face.traffic.messages == MOST
+
+
+def test_answers_are_limited_in_time(desk):
+    wrong = [message("/agentface/emotion", "sf", "joi", 0.5)] * 1000
+    desk.take(*wrong)
+    assert len(desk.said()) == ANSWERS_AT_ONCE
+    desk.clock.sleep(0.5)
+    desk.take(*wrong)
+    assert len(desk.said()) == ANSWERS_A_SECOND / 2
+    assert desk.face.traffic.errors["rejected"] == 2000
+
+
+def test_the_status_is_limited_over_all_senders(desk):
+    desk.receiver.take([(message("/agentface/status"), ("10.0.0.1", port)) for port in range(1000)])
+    assert len(desk.said()) == ANSWERS_AT_ONCE
+    assert desk.face.traffic.messages == 1000

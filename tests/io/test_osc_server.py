@@ -1,0 +1,137 @@
+from __future__ import annotations
+
+import json
+import socket
+import threading
+import time
+
+import pytest
+from osc_bytes import message
+
+from agentface import EmotionState, Face, load_model
+from agentface.errors import ServerError
+from agentface.io.osc import server as server_module
+from agentface.io.osc.codec import decode
+from agentface.io.osc.server import MOST_WAITING, OscServer
+
+
+@pytest.fixture(scope="module")
+def model():
+    return load_model()
+
+
+@pytest.fixture
+def face(model):
+    return Face(model)
+
+
+@pytest.fixture
+def server(face):
+    with OscServer(face, port=0) as server:
+        yield server
+
+
+@pytest.fixture
+def client(server):
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as client:
+        client.connect((server.host, server.port))
+        client.settimeout(0.05)
+        yield client
+
+
+def hear(face, client, seconds=10.0):
+    """The next answer, while the face is stepped."""
+    end = time.monotonic() + seconds
+    while time.monotonic() < end:
+        face.step(0.01)
+        try:
+            return decode(client.recv(65536))[0]
+        except TimeoutError:
+            continue
+    raise AssertionError("no answer")
+
+
+def wait_for(condition, face, seconds=10.0):
+    end = time.monotonic() + seconds
+    while not condition():
+        assert time.monotonic() < end
+        face.step(0.01)
+
+
+def test_a_message_over_a_socket_and_the_status(face, client):
+    client.send(message("/agentface/emotion", "sff", "joy", 0.5, 0))
+    client.send(message("/agentface/status"))
+    status = json.loads(hear(face, client).arguments[0])
+    assert status["emotion"]["happiness"] == status["shown"]["emotion"]["happiness"] == 0.5
+
+
+def test_errors_come_back_to_the_sender(face, client):
+    client.send(message("/agentface/emotion", "sf", "joi", 0.5))
+    answer = hear(face, client)
+    assert answer.address == "/agentface/error"
+    assert answer.arguments[0] == "/agentface/emotion"
+    client.send(b"/agentface/emotion\0\0,sf")
+    assert hear(face, client).arguments[0] == "/agentface/emotion"
+    client.send(b"\xff" * 60_000)
+    assert "more than" in hear(face, client).arguments[1]
+    client.send(b"")
+    assert hear(face, client).arguments[0] == ""
+    assert face.traffic.errors == {"malformed": 3, "unknown": 0, "rejected": 1}
+
+
+def test_a_flood_leaves_the_newest_state_and_no_queue(face, server, client):
+    for number in range(20_000):
+        client.send(message("/agentface/emotion", "sf", "joy", number / 20_000))
+        if number % 500 == 0:
+            face.step(0.001)
+            assert len(server._waiting) <= MOST_WAITING
+    # The kernel may drop what comes too fast; the sender's last word, sent when the flood is over, counts.
+    client.send(message("/agentface/emotion", "sf", "joy", 0.25))
+    wait_for(lambda: face.explain().state == EmotionState.of(happiness=0.25), face)
+    face.step(0.01)
+    assert not server._waiting
+    assert face.traffic.errors == {"malformed": 0, "unknown": 0, "rejected": 0}
+
+
+def test_without_steps_the_oldest_are_dropped(face, server, client):
+    for number in range(3 * MOST_WAITING):
+        client.send(message("/agentface/emotion", "sf", "joy", number / (3 * MOST_WAITING)))
+        while number % 64 == 63 and len(server._waiting) < min(number, MOST_WAITING) - 63:
+            time.sleep(0.001)
+    time.sleep(0.2)
+    assert len(server._waiting) == MOST_WAITING
+    face.step(0.01)
+    assert face.explain().state["happiness"] > 0.9
+    assert face.traffic.messages == MOST_WAITING
+
+
+def test_a_sender_that_is_gone_does_not_stop_the_server(face, server, client):
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as gone:
+        gone.connect((server.host, server.port))
+        gone.send(message("/agentface/status"))
+    wait_for(lambda: face.traffic.messages == 1, face)
+    client.send(message("/agentface/status"))
+    assert hear(face, client).address == "/agentface/status"
+
+
+def test_a_taken_port_is_one_clear_error(face, server):
+    with pytest.raises(ServerError, match=f"port {server.port} of 127.0.0.1.*--osc"):
+        OscServer(face, port=server.port)
+    with pytest.raises(ServerError, match="no such host"):
+        OscServer(face, "no such host.invalid")
+    assert len(face.inputs) == 1
+
+
+def test_closing_frees_the_port_and_the_thread(face):
+    threads = threading.active_count()
+    server = OscServer(face, port=0)
+    server.close()
+    server.close()
+    assert threading.active_count() == threads
+    assert not face.inputs
+    OscServer(face, port=server.port).close()
+
+
+def test_it_listens_on_this_machine_alone_by_default(server):
+    assert server.host == "127.0.0.1"
+    assert (server_module.DEFAULT_HOST, server_module.DEFAULT_PORT) == ("127.0.0.1", 7400)

@@ -1,0 +1,244 @@
+from __future__ import annotations
+
+import json
+import os
+import re
+import shutil
+import signal
+import socket
+import subprocess
+import sys
+import threading
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+
+from agentface.cli import COMMANDS, cli
+from agentface.resources import face_folder, rules_file
+
+FACE_OPTIONS = ("--face", "--deformer")
+
+
+def call(*arguments):
+    return CliRunner().invoke(cli, [str(argument) for argument in arguments], prog_name="agentface")
+
+
+def fail(*arguments, code=1):
+    """Run a command that must fail cleanly; its message."""
+    result = call(*arguments)
+    assert result.exit_code == code, result.output
+    assert isinstance(result.exception, SystemExit)
+    assert "Traceback" not in result.stderr
+    return result.stderr
+
+
+def pixels(path):
+    from PIL import Image
+
+    with Image.open(path) as image:
+        return np.asarray(image)
+
+
+def test_help_is_light_and_names_every_command():
+    script = (
+        "import sys; from click.testing import CliRunner; from agentface.cli import cli\n"
+        "print(CliRunner().invoke(cli, ['--help']).output)\n"
+        "assert not {'numpy', 'numba', 'moderngl', 'pydantic', 'rich', 'PIL', 'av'} & set(sys.modules)"
+    )
+    done = subprocess.run([sys.executable, "-c", script], check=True, capture_output=True, text=True, timeout=60)
+    assert all(f"  {command} " in done.stdout for command in COMMANDS)
+
+
+@pytest.mark.parametrize("command", COMMANDS)
+def test_every_command_takes_a_face_and_a_deformer(command):
+    text = call(command, "--help").output
+    assert all(option in text for option in FACE_OPTIONS)
+
+
+@pytest.mark.gl
+def test_render_all_options(tmp_path):
+    path = tmp_path / "face.png"
+    options = (
+        "--emotion happiness=0.6,surprise=0.2 --emotion fear=0.1 --muscle risorius_l=0.5 --gaze -20,5 --jaw 0.3"
+        " --size 160x120 --quality portrait --camera three-quarter --face onyx --deformer geometric"
+    )
+    result = call("render", *options.split(), "-o", path)
+    assert result.exit_code == 0, result.output
+    assert pixels(path).shape == (120, 160, 3)
+
+
+@pytest.mark.gl
+def test_render_is_what_face_render_gives(tmp_path):
+    from agentface import Face
+
+    path = tmp_path / "face.png"
+    assert call("render", "--emotion", "anger=1", "--size", "96x96", "-o", path).exit_code == 0
+    face = Face()
+    face.set_emotion("anger", 1.0, fade=0.0)
+    np.testing.assert_array_equal(pixels(path), face.render((96, 96)))
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        (["--emotion", "hapiness=0.5"], "did you mean happiness"),
+        (["--emotion", "happiness=1.5"], "0..1"),
+        (["--emotion", "happiness=nan"], "finite"),
+        (["--muscle", "biceps=0.5"], "biceps"),
+        (["--gaze", "80,0"], "gaze_yaw_deg"),
+        (["--jaw", "2"], "jaw_open"),
+        (["--face", "nobody"], "known: amber, onyx"),
+        (["--deformer", "tissue"], "no layered tissue"),
+    ],
+)
+def test_render_says_what_is_wrong_and_writes_nothing(tmp_path, options, message):
+    assert message in fail("render", *options, "-o", tmp_path / "a.png")
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize("name", ["no/such/folder/a.png", "a.gif", "a"])
+def test_render_checks_its_output_first(tmp_path, name):
+    assert name in fail("render", "-o", tmp_path / name)
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize(
+    "options",
+    [
+        ["--emotion", "happiness"],
+        ["--emotion", "happiness=much"],
+        ["--emotion", "fear=1", "--emotion", "fear=0.5"],
+        ["--size", "big"],
+        ["--size", "0x10"],
+        ["--gaze", "1"],
+        ["--camera", "behind"],
+        ["--quality", "best"],
+        ["--jaw", "wide"],
+    ],
+)
+def test_usage_errors_are_code_2(tmp_path, options):
+    fail("render", *options, "-o", tmp_path / "a.png", code=2)
+
+
+def test_no_output_and_no_command_are_usage_errors():
+    fail("render", code=2)
+    fail("rendre", code=2)
+    fail("explain", code=2)
+
+
+def test_explain_in_text_and_json(tmp_path):
+    text = call("explain", "--emotion", "fear=0.5").output
+    assert "if Fear is" in text
+    path = tmp_path / "why.json"
+    assert call("explain", "--emotion", "fear=0.5", "anger=0.2", "--json", path).exit_code == 0
+    why = json.loads(path.read_text())
+    assert why["emotion"]["fear"] == 0.5
+    assert why["emotion"]["anger"] == 0.2
+    assert json.loads(call("explain", "--emotion", "fear=0.5", "--json", "-").stdout)["contractions"]
+    assert "fera" in fail("explain", "--emotion", "fera=0.5")
+
+
+def test_check_finds_nothing_in_what_ships():
+    result = call("check")
+    assert result.exit_code == 0, result.output
+    assert re.findall(r"(\w+): good", result.output) == ["rules", "amber", "onyx"]
+
+
+def test_check_prints_all_faults_of_all_files(tmp_path):
+    shutil.copytree(face_folder("amber"), tmp_path / "face")
+    jaw, muscles, rules = tmp_path / "face" / "jaw.yaml", tmp_path / "face" / "muscles.yaml", tmp_path / "emotions.yaml"
+    jaw.write_text(jaw.read_text().replace("widest_deg:", "widest:"))
+    muscles.write_text(muscles.read_text().replace("risorius:", "rissorius:"))
+    rules.write_text(rules_file("emotions.yaml").read_text().replace("VeryBig", "Enormous", 1))
+    said = fail("check", tmp_path / "face", rules)
+    assert re.search(rf"{jaw}:\d+: .*widest", said)
+    assert re.search(rf"{muscles}:\d+: .*rissorius", said)
+    assert re.search(rf"{rules}:\d+: .*Enormous", said)
+    assert "emotions.yaml" not in call("check", "--face", "amber").output
+
+
+def test_check_names_files_that_it_does_not_know(tmp_path):
+    (tmp_path / "cake.yaml").write_text("a: 1")
+    assert "cake.yaml" in fail("check", tmp_path / "cake.yaml")
+    assert "nothing" in fail("check", tmp_path / "jaw.yaml")
+    assert "neither" in fail("check", tmp_path)
+    assert "head.glb" in fail("check", shutil.copy(face_folder("amber") / "regions.yaml", tmp_path))
+
+
+def test_bench_prints_what_the_benchmarks_say(monkeypatch):
+    from agentface import bench
+
+    monkeypatch.setattr(bench, "run", lambda name, face: {"name": name, "inner": {"time_us": 1.23456}})
+    assert json.loads(call("bench", "deform", "--json", "-").stdout) == {
+        "name": "deform",
+        "inner": {"time_us": 1.23456},
+    }
+    assert list(json.loads(call("bench", "--json", "-").stdout)) == list(bench.BENCHES)
+    assert re.search(r"deform.inner.time_us +1.235", call("bench").output)
+
+
+def test_bench_names_the_benchmarks():
+    assert "known: deform, fuzzy" in fail("bench", "nothing")
+
+
+def test_a_taken_port_is_one_clear_message():
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as taken:
+        taken.bind(("127.0.0.1", 0))
+        port = taken.getsockname()[1]
+        assert f"port {port}" in fail("serve", "--osc", f"127.0.0.1:{port}", "--duration", "1")
+
+
+@pytest.mark.parametrize("options", [["--osc", "7400"], ["--osc", "host:99999"], ["--duration", "0"], ["--view", "tv"]])
+def test_serve_usage(options):
+    fail("serve", *options, code=2)
+
+
+@pytest.mark.parametrize("kind", [signal.SIGINT, signal.SIGTERM])
+def test_serve_answers_and_ends_when_told(kind):
+    from pythonosc.osc_message import OscMessage
+    from pythonosc.osc_message_builder import OscMessageBuilder
+
+    server = subprocess.Popen(
+        [sys.executable, "-m", "agentface", "serve", "--osc", "127.0.0.1:0"],
+        stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=os.environ | {"PYTHONUNBUFFERED": "1"},
+    )  # fmt: skip
+    try:
+        watchdog = threading.Timer(120, server.kill)
+        watchdog.start()
+        place = re.search(r"amber listens to OSC on 127.0.0.1:(\d+)", server.stdout.readline())
+        with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as client:
+            client.connect(("127.0.0.1", int(place[1])))
+            client.settimeout(30)
+            client.send(OscMessageBuilder("/agentface/status").build().dgram)
+            assert json.loads(OscMessage(client.recv(65536)).params[0])["face"] == "amber"
+        server.send_signal(kind)
+        _, errors = server.communicate(timeout=30)
+        assert server.returncode == 0
+        assert errors == ""
+    finally:
+        watchdog.cancel()
+        server.kill()
+        server.wait()
+
+
+@pytest.mark.gl
+def test_serve_records_a_film(tmp_path):
+    import av
+
+    path = tmp_path / "film.mp4"
+    result = call(
+        "serve", "--osc", "127.0.0.1:0", "--record", path, "--duration", "0.6", "--fps", "10", "--size", "96x64"
+    )
+    assert result.exit_code == 0, result.output
+    with av.open(str(path)) as film:
+        times = [float(frame.time) for frame in film.decode(video=0)]
+    assert times[0] < 0.1
+    assert 0.2 < times[-1] < 0.6
+    assert times == sorted(set(times))
+
+
+def test_serve_refuses_a_film_that_cannot_be_written(tmp_path):
+    assert "no folder" in fail("serve", "--osc", "127.0.0.1:0", "--record", tmp_path / "no" / "a.mp4")
+    assert ".mp4" in fail("serve", "--osc", "127.0.0.1:0", "--record", tmp_path / "a.avi")
+    assert "even" in fail("serve", "--osc", "127.0.0.1:0", "--record", tmp_path / "a.mp4", "--size", "95x64")

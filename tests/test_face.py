@@ -1,0 +1,185 @@
+from __future__ import annotations
+
+import json
+import math
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+
+import agentface
+from agentface import AgentFaceError, EmotionState, Face, FacePose, load_model
+from agentface.errors import InvalidValueError, UnknownNameError
+from agentface.motion.clock import ManualClock
+
+KEYS = ["face", "emotion", "shown", "speech", "gaze_deg", "frame_ms", "messages", "errors"]
+
+
+@pytest.fixture(scope="module")
+def model():
+    return load_model()
+
+
+@pytest.fixture
+def face(model):
+    return Face(model)
+
+
+def test_an_emotion_moves_the_face_and_neutral_brings_it_back(face):
+    rest = face.step(0.0).vertices.copy()
+    face.set_emotion("happiness", 0.8)
+    first = face.step(1e-3).vertices.copy()
+    there = face.step(1.0).vertices.copy()
+    assert np.abs(first - rest).max() < 1e-5
+    assert 2e-3 < np.linalg.norm(there - rest, axis=1).max() < 0.04
+    face.neutral(0.1)
+    np.testing.assert_array_equal(face.step(0.2).vertices, rest)
+
+
+def test_one_name_leaves_the_other_emotions_and_a_mapping_does_not(face):
+    face.set_emotion("anger", 0.4)
+    face.set_emotion("joy", 0.5)
+    assert face.explain().state == EmotionState.of(anger=0.4, happiness=0.5)
+    face.set_emotion({"fear": 0.3})
+    assert face.explain().state == EmotionState.of(fear=0.3)
+    face.neutral()
+    assert face.explain().state == EmotionState()
+
+
+def test_hold_brings_a_whole_state_back(face):
+    face.set_emotion({"happiness": 0.6, "surprise": 0.4}, fade=0.3, hold=2.0)
+    face.step(2.2)
+    assert face.status()["emotion"]["happiness"] == 0.6
+    face.step(0.5)
+    assert face.pose == FacePose()
+
+
+@pytest.mark.parametrize(
+    "call",
+    [
+        lambda face: face.set_emotion("hapiness", 0.5),
+        lambda face: face.set_emotion("happiness", 1.2),
+        lambda face: face.set_emotion("happiness", math.nan),
+        lambda face: face.set_emotion("happiness", None),
+        lambda face: face.set_emotion("happiness", True),
+        lambda face: face.set_emotion("happiness", 0.5, fade=-1),
+        lambda face: face.set_emotion("happiness", 0.5, fade=math.inf),
+        lambda face: face.set_emotion("happiness", 0.5, hold=-0.1),
+        lambda face: face.set_emotion({"happiness": 0.5}, 0.5),
+        lambda face: face.set_emotion({"fear": 0.5, "nothing": 0.5}),
+        lambda face: face.set_emotion({"joy": 0.5, "happy": 0.5}),
+        lambda face: face.set_emotion(None, 0.5),
+        lambda face: face.set_muscle("biceps", 0.5),
+        lambda face: face.set_muscle("gaze_yaw", 0.5),
+        lambda face: face.set_muscle("zygomaticus_major", -0.1),
+        lambda face: face.set_jaw(2),
+        lambda face: face.set_gaze(51, 0),
+        lambda face: face.set_gaze(0, math.nan),
+        lambda face: face.set_head(0, 0, "left"),
+        lambda face: face.neutral(-1),
+        lambda face: face.step(-0.1),
+        lambda face: face.step(math.nan),
+    ],
+)
+def test_a_wrong_call_changes_nothing(face, call):
+    face.set_emotion("sadness", 0.4)
+    face.set_muscle("risorius", 0.3)
+    face.step(0.1)
+    before = face.status() | {"frame_ms": 0}
+    with pytest.raises((UnknownNameError, InvalidValueError)):
+        call(face)
+    assert face.status() | {"frame_ms": 0} == before
+    face.step(1.0)
+    assert face.explain().state == EmotionState.of(sadness=0.4)
+
+
+def test_the_same_calls_give_the_same_frames(model):
+    def film():
+        face = Face(model, seed=7)
+        for frame in range(40):
+            if frame % 7 == 0:
+                face.set_emotion("fear" if frame % 2 else "anger", frame / 40)
+            if frame == 9:
+                face.blink()
+                face.set_gaze(10, -5)
+            yield face.step(1 / 30).vertices.copy()
+
+    for one, other in zip(film(), film(), strict=True):
+        np.testing.assert_array_equal(one, other)
+
+
+def test_single_muscles_jaw_gaze_and_head_reach_the_pose(face):
+    face.set_muscle("corrugator_supercilii", 0.7, fade=0.0)
+    face.set_jaw(0.4, fade=0.0)
+    face.set_gaze(20, -10, fade=0.0)
+    face.set_head(-30, 5, 10, fade=0.0)
+    pose = face.pose
+    assert pose["corrugator_supercilii_l"] == pose["corrugator_supercilii_r"] == pytest.approx(0.7)
+    assert pose["jaw_open"] == pytest.approx(0.4)
+    assert math.degrees(pose["gaze_yaw"]) == pytest.approx(20, abs=1e-4)
+    assert math.degrees(pose["head_yaw"]) == pytest.approx(-30, abs=1e-4)
+    face.set_muscle("corrugator_supercilii", None, fade=0.0)
+    assert face.pose["corrugator_supercilii_l"] == 0.0
+
+
+def test_the_pose_is_fresh_without_a_step(face):
+    face.set_emotion({"disgust": 1.0}, fade=0.0)
+    assert face.pose["levator_labii_superioris_alaeque_nasi_l"] > 0.5
+    assert face.status()["shown"]["emotion"]["disgust"] == 1.0
+
+
+def test_status_has_exactly_its_keys_and_is_json(model):
+    face = Face(model, clock=ManualClock())
+    face.set_emotion({"fear": 0.5, "surprise": 0.25}, fade=0.5)
+    face.set_gaze(12, 3, fade=0.0)
+    face.step(0.25)
+    status = json.loads(json.dumps(face.status(), allow_nan=False))
+    assert list(status) == KEYS
+    assert status["face"] == "amber"
+    assert status["emotion"] == {
+        "happiness": 0, "sadness": 0, "anger": 0, "fear": 0.5, "disgust": 0, "surprise": 0.25,
+    }  # fmt: skip
+    assert status["shown"]["emotion"]["fear"] == 0.25
+    assert 0 < status["shown"]["contractions"]["risorius_l"] < 1
+    assert status["gaze_deg"] == pytest.approx([12, 3], abs=1e-3)
+    assert status["frame_ms"] == 0.0
+    assert status["messages"] == 0
+    assert status["errors"] == {"malformed": 0, "unknown": 0, "rejected": 0}
+
+
+def test_faces_and_deformers_are_checked():
+    with pytest.raises(UnknownNameError, match="did you mean amber"):
+        Face("ambre")
+    with pytest.raises(InvalidValueError, match="no layered tissue"):
+        Face(deformer="tissue")
+    with pytest.raises(UnknownNameError, match="geometric"):
+        Face(deformer="jelly")
+    assert Face("onyx").status()["face"] == "onyx"
+
+
+@pytest.mark.gl
+def test_render_shows_the_emotion(face):
+    neutral = face.render((160, 120))
+    assert neutral.shape == (120, 160, 3)
+    assert neutral.dtype == np.uint8
+    face.set_emotion("surprise", 1.0, fade=0.0)
+    surprised = face.render((160, 120))
+    assert np.abs(surprised.astype(int) - neutral).max() > 40
+    face.neutral(0.0)
+    np.testing.assert_array_equal(face.render((160, 120)), neutral)
+
+
+def test_public_names_are_lazy_and_complete():
+    script = (
+        "import sys, agentface\n"
+        "heavy = {'numba', 'scipy', 'skfuzzy', 'moderngl', 'PIL', 'av', 'pydantic', 'yaml', 'click', 'rich'}\n"
+        "assert not heavy & set(sys.modules), heavy & set(sys.modules);"
+        "assert set(agentface.__all__) <= set(dir(agentface));"
+        "[getattr(agentface, name) for name in agentface.__all__];"
+        "assert not {'moderngl', 'skfuzzy', 'av'} & set(sys.modules)"
+    )
+    subprocess.run([sys.executable, "-W", "error", "-c", script], check=True, timeout=60)
+    assert issubclass(UnknownNameError, AgentFaceError)
+    with pytest.raises(AttributeError):
+        _ = agentface.Fase
