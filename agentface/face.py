@@ -160,6 +160,11 @@ class Face:
         return geometry
 
     @property
+    def emotion(self) -> EmotionState:
+        """The target intensities: what the face shows when its moves are done."""
+        return self._mixer.emotion.target
+
+    @property
     def pose(self) -> FacePose:
         """Every animation parameter as shown now."""
         if self._pose is None:
@@ -191,7 +196,7 @@ class Face:
 
     def explain(self) -> Explanation:
         """Which rules make the contractions of the target emotions; has ``as_dict()`` and ``render()``."""
-        return self._inference.explain(self._mixer.emotion.target)
+        return self._inference.explain(self.emotion)
 
     def status(self) -> dict[str, Any]:
         """What the face is doing now, JSON-ready.

@@ -40,7 +40,7 @@ void main() {
         alpha = smoothstep(0.0, 0.22, edge - 0.30 * (0.7 * fine.a + 0.3 * wide.b) * smoothstep(0.6, 0.0, edge));
         spread = 0.20 * (wide.g - 0.5);
     }
-    float cover = mix(0.35, 1.0, matter.w);
+    float cover = mix(0.65, 1.0, matter.w);
     vec3 c = hair_light(base, along, n, view, mix(0.8, 0.15, cropped) * (0.4 + 1.2 * strand), spread, cover);
     colour = vec4(c, alpha);
 }

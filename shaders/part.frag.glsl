@@ -7,7 +7,8 @@ centroid in vec3 position, normal, rest_position;
 centroid in vec4 matter;
 out vec4 colour;
 
-uniform float mouth_front;
+uniform float mouth_front;  // z of the lips at rest
+uniform float mouth_light;  // how much light the lips let in
 uniform vec3 cloth;
 
 void main() {
@@ -18,7 +19,7 @@ void main() {
     albedo = (albedo + matter.w * cloth) * (0.9 + 0.2 * fine.r);
     float rough = mix(0.8, mix(0.40, 0.26, matter.x), inside), f0 = mix(0.02, 0.04, inside);
     float depth = mix(1.0, smoothstep(-0.050, 0.004, rest_position.z - mouth_front), inside);
-    float reach = mix(1.0, mix(0.10, 0.85, depth), inside);
+    float reach = mix(1.0, mix(0.10, 0.85, depth) * mouth_light, inside);
     vec3 light = hemisphere(n), gloss = vec3(0.0);
     float n_v = max(dot(n, view), 0.02);
     for (int i = 0; i < LIGHTS; i++) {

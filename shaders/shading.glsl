@@ -3,7 +3,7 @@ const float PI = 3.14159265;
 
 // GGX, Trowbridge and Reitz 1975.
 float ggx(float n_h, float roughness) {
-    float a2 = pow(roughness, 4.0), d = n_h * n_h * (a2 - 1.0) + 1.0;
+    float a = roughness * roughness, a2 = a * a, d = n_h * n_h * (a2 - 1.0) + 1.0;
     return a2 / (PI * d * d);
 }
 

@@ -3,7 +3,6 @@ uniform sampler2DShadow key_depth;
 uniform int shadow_taps;
 
 float key_light(vec3 at, vec3 n) {
-    if (shadow_taps == 0) return 1.0;
     vec3 q = 0.5 * (shadow_projection * vec4(at + 0.0035 * n, 1.0)).xyz + 0.5;
     vec2 texel = 1.0 / vec2(textureSize(key_depth, 0));
     float lit = 0.0;

@@ -8,10 +8,14 @@ in vec3 rest_normal;
 in vec4 material;      // lip, inside of the mouth, wet lid margin, ear
 in vec4 complexion;    // redness, eye socket, gloss, under the hair
 in float ambient;      // how much of the surroundings' light arrives
+in float lit_at_rest;  // how much of the key light arrives at rest
 
 centroid out vec3 position, normal, blurred_normal, rest_position;
 centroid out vec4 matter, tint;
-centroid out float open_sky;
+centroid out float open_sky, rest_key;
+
+const float MOUTH_BEHIND = 0.007;  // metres
+const float LIP_BEHIND = 0.0045;
 
 void main() {
     vec4 placed = head * vec4(edge_position(ends), 1.0);
@@ -23,5 +27,10 @@ void main() {
     matter = material;
     tint = complexion;
     open_sky = ambient;
+    rest_key = lit_at_rest;
     gl_Position = view_projection * placed;
+    // the inside of the mouth follows the lips less than the lips move: it must not hide the teeth
+    float yielding = max(MOUTH_BEHIND * material.y, LIP_BEHIND * material.x * smoothstep(0.20, 0.0, ambient));
+    vec4 behind = view_projection * vec4(position + yielding * normalize(position - eye_point.xyz), 1.0);
+    gl_Position.z = behind.z / behind.w * gl_Position.w;
 }

@@ -40,11 +40,11 @@ def test_an_emotion_moves_the_face_and_neutral_brings_it_back(face):
 def test_one_name_leaves_the_other_emotions_and_a_mapping_does_not(face):
     face.set_emotion("anger", 0.4)
     face.set_emotion("joy", 0.5)
-    assert face.explain().state == EmotionState.of(anger=0.4, happiness=0.5)
+    assert face.emotion == EmotionState.of(anger=0.4, happiness=0.5)
     face.set_emotion({"fear": 0.3})
-    assert face.explain().state == EmotionState.of(fear=0.3)
+    assert face.emotion == EmotionState.of(fear=0.3)
     face.neutral()
-    assert face.explain().state == EmotionState()
+    assert face.emotion == EmotionState()
 
 
 def test_hold_brings_a_whole_state_back(face):
@@ -91,7 +91,7 @@ def test_a_wrong_call_changes_nothing(face, call):
         call(face)
     assert face.status() | {"frame_ms": 0} == before
     face.step(1.0)
-    assert face.explain().state == EmotionState.of(sadness=0.4)
+    assert face.emotion == EmotionState.of(sadness=0.4)
 
 
 def test_the_same_calls_give_the_same_frames(model):

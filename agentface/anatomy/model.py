@@ -12,11 +12,11 @@ from pydantic import Field
 
 from agentface.anatomy.glb import MeshArrays, Shape, read_glb
 from agentface.anatomy.landmarks import Landmarks, load_landmarks
+from agentface.anatomy.muscle_set import MuscleSet
 from agentface.anatomy.muscles import MusclesFile, place_muscles, read_muscles
 from agentface.anatomy.regions import Regions, load_regions
 from agentface.config import Document, Table, load
 from agentface.conventions import SIDES, Floats, Indices
-from agentface.deform.vector_muscle import MuscleSet
 from agentface.errors import DataError, Fault
 from agentface.resources import DEFAULT_FACE, face_folder
 

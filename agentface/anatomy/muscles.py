@@ -14,10 +14,10 @@ import numpy as np
 from pydantic import Field
 
 from agentface.anatomy.landmarks import LANDMARKS, PAIRED_LANDMARKS, Landmarks
+from agentface.anatomy.muscle_set import MuscleSet
 from agentface.anatomy.regions import HALF_REGIONS, SUB_REGIONS, Regions
 from agentface.config import Document, Table
 from agentface.conventions import SIDES, Doubles, Floats, Indices
-from agentface.deform.vector_muscle import MuscleSet
 from agentface.parameters import VECTOR_MUSCLES
 
 _Length = Annotated[float, Field(gt=0, le=5)]

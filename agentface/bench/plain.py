@@ -9,7 +9,7 @@ import numpy.typing as npt
 from numba import njit
 
 from agentface.conventions import Bytes, Doubles, Floats
-from agentface.deform.vector_muscle import MuscleSet
+from agentface.anatomy.muscle_set import MuscleSet
 
 
 def constants(muscles: MuscleSet) -> Doubles:

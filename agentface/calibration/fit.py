@@ -20,7 +20,8 @@ from agentface.conventions import SIDES, Doubles, Indices
 _ORIGIN_WITHIN = 0.40
 _INSERTION_WITHIN = 0.25
 _LOW = (*[-_ORIGIN_WITHIN] * 3, *[-_INSERTION_WITHIN] * 3, 12.0, 0.15, 0.12, 0.01)
-_HIGH = (*[_ORIGIN_WITHIN] * 3, *[_INSERTION_WITHIN] * 3, 75.0, 1.8, 1.5, 0.60)
+_HIGH = (*[_ORIGIN_WITHIN] * 3, *[_INSERTION_WITHIN] * 3, 50.0, 1.8, 1.5, 0.60)
+_BEYOND_INSERTION = 0.55  # how far a zone may reach past the skin end: wide zones blur the face and cost time
 _DIRECTION_WEIGHT = 0.55
 _OUTSIDE_WEIGHT = 0.8
 _STRETCH_WEIGHT = 0.25  # a pinch is ugly however few vertices it has
@@ -102,7 +103,8 @@ class Fitter:
                 rows[2 * i + j, :3] = anchor_point(row.origin, side, self.model.landmarks) + flip * value[:3]
                 rows[2 * i + j, 3:6] = anchor_point(row.insertion, side, self.model.landmarks) + flip * value[3:6]
                 rows[2 * i + j, 6] = np.cos(np.radians(value[6]))
-                rows[2 * i + j, 7:] = self.unit * np.array([value[7], value[7] + value[8], value[9]])
+                length = np.linalg.norm(rows[2 * i + j, 3:6] - rows[2 * i + j, :3]) / self.unit
+                rows[2 * i + j, 7:] = self.unit * np.array([*_fall_off(value, length), value[9]])
         return rows
 
     def residuals(self, values: Doubles) -> Doubles:
@@ -146,17 +148,26 @@ class Fitter:
         result = {}
         for name, value in zip(self.group.muscles, values.reshape(-1, ROWS), strict=True):
             row = self.anatomy.muscles[name]
+            ends = [_moved(row.origin, value[:3]), _moved(row.insertion, value[3:6])]
+            origin, insertion = (anchor_point(end, SIDES[0], self.model.landmarks) for end in ends)
+            start, finish = _fall_off(value, float(np.linalg.norm(insertion - origin)) / self.unit)
             result[name] = row.model_copy(
                 update={
-                    "origin": _moved(row.origin, value[:3]),
-                    "insertion": _moved(row.insertion, value[3:6]),
+                    "origin": ends[0],
+                    "insertion": ends[1],
                     "zone_deg": round(float(value[6]), 2),
-                    "fall_start": round(float(value[7]), 4),
-                    "fall_finish": round(float(value[7] + value[8]), 4),
+                    "fall_start": round(start, 4),
+                    "fall_finish": round(finish, 4),
                     "elasticity": round(float(value[9]), 4),
                 }
             )
         return result
+
+
+def _fall_off(value: Doubles, length: float) -> tuple[float, float]:
+    """Rs and Rf in eye separations, for a muscle of ``length`` from bone end to skin end."""
+    finish = min(float(value[7] + value[8]), length + _BEYOND_INSERTION)
+    return min(float(value[7]), finish - 0.1), finish
 
 
 def _moved(anchor: Anchor, by: Doubles) -> Anchor:

@@ -7,9 +7,9 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from agentface.anatomy.muscle_set import MuscleSet
 from agentface.conventions import Doubles, Floats, Indices
 from agentface.deform.kernels import LANES
-from agentface.deform.vector_muscle import MuscleSet
 
 
 class Blocks(NamedTuple):

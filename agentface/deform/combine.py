@@ -13,8 +13,9 @@ from typing import Any, Literal, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
+from agentface.anatomy.muscle_set import MuscleSet
 from agentface.conventions import Doubles, Floats, check_vertices
-from agentface.deform.vector_muscle import MuscleSet
+from agentface.deform.vector_muscle import pull
 from agentface.errors import InvalidValueError, UnknownNameError
 
 Method: TypeAlias = Literal["parallel", "sequential", "summed"]
@@ -51,7 +52,7 @@ def sequential(rest: Points, muscles: MuscleSet, contractions: Points) -> Double
     """Waters: one muscle after another in the set's order, each at its full contraction, on moved vertices."""
     moved = np.array(rest, dtype=np.float64)
     for muscle in np.flatnonzero(contractions):
-        moved += muscles.displacement(moved, int(muscle), float(contractions[muscle]))
+        moved += pull(muscles, int(muscle), moved, float(contractions[muscle]))
     return moved
 
 
@@ -60,7 +61,7 @@ def summed(rest: Points, muscles: MuscleSet, contractions: Points) -> Doubles:
     start = np.asarray(rest, dtype=np.float64)
     moved = start.copy()
     for muscle in np.flatnonzero(contractions):
-        moved += muscles.displacement(start, int(muscle), float(contractions[muscle]))
+        moved += pull(muscles, int(muscle), start, float(contractions[muscle]))
     return moved
 
 

@@ -42,7 +42,7 @@ class AnchoredArray:
 
 
 def eye_lining(model: HeadModel, side: str) -> Anchored:
-    """A funnel of flesh from the inner lid margin back along the eyeball, so that no gap shows the inside of the head."""
+    """A funnel of flesh from the inner lid margin back along the eyeball: no gap shows the inside of the head."""
     ring = model.eyelids.rings[side][0]
     loop = np.array(ring.upper + ring.lower[-2:0:-1], np.int32)
     centre = model.eye_centre(side)

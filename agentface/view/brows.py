@@ -7,7 +7,7 @@ import numpy as np
 from agentface.anatomy.model import HeadModel
 from agentface.conventions import SIDES, Doubles, Floats, Indices
 from agentface.view.look import HairLook
-from agentface.view.ribbons import Hairs, roots_along, roots_in_front, unit_rows
+from agentface.view.ribbons import Hairs, Roots, roots_along, roots_in_front, unit_rows
 
 _BROW_HAIRS = 520
 _UPPER_LASHES, _LOWER_LASHES = 90, 42
@@ -22,15 +22,20 @@ class BrowLine:
     def __init__(self, model: HeadModel) -> None:
         at = model.landmarks
         self.scale = at.eye_separation / _REFERENCE_EYES
-        self.inner, self.outer = float(at["brow_inner_l"][0]) - 0.002 * self.scale, float(at["brow_outer_l"][0]) + 0.004 * self.scale
+        self.inner, self.outer = (
+            float(at["brow_inner_l"][0]) - 0.002 * self.scale,
+            float(at["brow_outer_l"][0]) + 0.004 * self.scale,
+        )
         points = np.array([at[f"brow_{name}_l"] for name in ("inner", "middle", "outer")], np.float64)
         self.curve = np.polyfit(points[:, 0], points[:, 1], 2)
 
     def place(self, s: Doubles) -> tuple[Doubles, Doubles]:
-        """x and y of the middle line."""
+        """The middle line's x and y."""
         x = self.inner + (self.outer - self.inner) * s
         # the arch is highest two thirds out, and the tail comes down to a point
-        return x, np.polyval(self.curve, x) - 0.0012 * self.scale * (1 - s) ** 2 + 0.0008 * self.scale * np.sin(np.pi * s)
+        return x, np.polyval(self.curve, x) - 0.0012 * self.scale * (1 - s) ** 2 + 0.0008 * self.scale * np.sin(
+            np.pi * s
+        )
 
     def direction(self, s: Doubles) -> Doubles:
         """``(N, 2)`` unit tangents towards the tail."""
@@ -54,7 +59,7 @@ def brow_hairs(model: HeadModel, normals: Floats, look: HairLook, rng: np.random
     """Both eyebrows."""
     line = BrowLine(model)
     count = round(_BROW_HAIRS * look.brow_density)
-    near = _triangles_near(model, "upper_face")
+    near = _brow_triangles(model)
     places, flats = [], []
     for side in (1.0, -1.0):
         s, off = rng.random(count) ** 0.9, rng.normal(0, 0.45, count).clip(-1, 1)
@@ -66,7 +71,10 @@ def brow_hairs(model: HeadModel, normals: Floats, look: HairLook, rng: np.random
         halfway, end = (_turned(line.direction(s), lean * part) * length[:, None] for part in (1.0, 0.55))
         flats.append(np.stack([0.5 * halfway, 0.25 * halfway + 0.75 * end], axis=1) * [side, 1.0])
     flat = np.concatenate(flats)
-    roots = roots_in_front(np.concatenate(places), model.vertices, near)
+    left = model.vertices[near, 0].max(1) > 0
+    roots = joined_roots(
+        [roots_in_front(places[0], model.vertices, near[left]), roots_in_front(places[1], model.vertices, near[~left])]
+    )
     n = roots.frames(model.vertices, normals)[1][:, :, 2]
     up = unit_rows(np.array([0.0, 1.0, 0.0]) - n * n[:, 1:2])
     x = np.cross(up, n)
@@ -98,9 +106,10 @@ def _lash_row(
     roots = roots_along(half, model.vertices, np.clip(1 - outward, 0.0, 1.0))
     lengths = (length * (0.55 + 0.55 * outward) * (0.8 + 0.35 * rng.random(count)))[:, None]
     fan = ((outward - 0.45) * 1.1 + rng.normal(0, 0.10, count))[:, None] * (1.0 if side == "l" else -1.0)
-    rise = (0.10, 0.62) if upper else (-0.22, -0.42)
-    bends = lengths * np.concatenate([0.35 * fan, np.full_like(fan, rise[0] - 0.10 * upper), np.full_like(fan, 0.50)], axis=1)
-    tips = lengths * np.concatenate([0.75 * fan, np.full_like(fan, rise[1]), np.full_like(fan, 0.68)], axis=1)
+    rise = (0.0, 0.62) if upper else (-0.10, -0.35)
+    reach = (0.50, 0.68) if upper else (0.60, 0.90)
+    bends = lengths * np.concatenate([0.35 * fan, np.full_like(fan, rise[0]), np.full_like(fan, reach[0])], axis=1)
+    tips = lengths * np.concatenate([0.75 * fan, np.full_like(fan, rise[1]), np.full_like(fan, reach[1])], axis=1)
     radii = (0.00024 if upper else 0.00016) * (0.8 + 0.4 * rng.random(count))
     paint = np.tile([0.008, 0.006, 0.005, 0.9 if upper else 0.65], (count, 1))
     return Hairs.grown(roots, (model.vertices, normals), bends, tips, radii, paint)
@@ -108,11 +117,14 @@ def _lash_row(
 
 def joined(parts: list[Hairs]) -> Hairs:
     """Several bundles of hairs as one."""
-    from agentface.view.ribbons import Roots
-
-    roots = Roots(np.concatenate([p.roots.corners for p in parts]), np.concatenate([p.roots.weights for p in parts]))
+    roots = joined_roots([part.roots for part in parts])
     fields = (np.concatenate([getattr(p, name) for p in parts]) for name in ("bends", "tips", "radii", "paint"))
     return Hairs(roots, *fields)
+
+
+def joined_roots(parts: list[Roots]) -> Roots:
+    """Several rows of roots as one."""
+    return Roots(np.concatenate([part.corners for part in parts]), np.concatenate([part.weights for part in parts]))
 
 
 def _turned(directions: Doubles, angles: Doubles) -> Doubles:
@@ -127,6 +139,11 @@ def _shades(colour: list[float], grey: float, count: int, rng: np.random.Generat
     return np.where(rng.random((count, 1)) < grey, 0.07 + 0.05 * rng.random((count, 1)), shades)
 
 
-def _triangles_near(model: HeadModel, region: str) -> Indices:
-    inside = model.regions.mask([region])
-    return np.asarray(model.triangles[inside[model.triangles].any(1)])
+def _brow_triangles(model: HeadModel) -> Indices:
+    """``(T, 3)``: the triangles that brows can grow on, some millimetres more than the brows themselves."""
+    at, margin = model.landmarks, 0.012
+    x, y = np.abs(model.vertices[:, 0]), model.vertices[:, 1]
+    inner, outer, top = at["brow_inner_l"], at["brow_outer_l"], at["brow_middle_l"]
+    inside = (x > inner[0] - margin) & (x < outer[0] + margin) & (y < top[1] + margin) & (y > outer[1] - 1.5 * margin)
+    inside &= model.vertices[:, 2] > outer[2] - 2 * margin
+    return np.asarray(model.triangles[inside[model.triangles].all(1)])

@@ -42,7 +42,9 @@ class Camera:
             object.__setattr__(self, name, tuple(check_finite(f"Camera.{name}", value) for value in point))
         check_range("Camera.field_of_view", self.field_of_view, 1e-3, 3.0)
         if np.linalg.norm(np.cross(self._arm, [0.0, 1.0, 0.0])) < 1e-9:
-            raise InvalidValueError("Camera.eye", "a place that is not the target, nor right above or below it", self.eye)
+            raise InvalidValueError(
+                "Camera.eye", "a place that is not the target, nor right above or below it", self.eye
+            )
 
     @property
     def _arm(self) -> Doubles:
@@ -88,7 +90,9 @@ class Camera:
         return replace(self, eye=tuple(np.add(self.target, self._arm * (distance / self.distance))))
 
 
-def _from(target: tuple[float, float, float], heading: float, height: float, distance: float) -> tuple[float, float, float]:
+def _from(
+    target: tuple[float, float, float], heading: float, height: float, distance: float
+) -> tuple[float, float, float]:
     flat = np.cos(height)
     arm = distance * np.array([np.sin(heading) * flat, np.sin(height), np.cos(heading) * flat])
     x, y, z = np.add(target, arm)

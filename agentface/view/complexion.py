@@ -9,9 +9,10 @@ from agentface.conventions import Doubles, Floats
 
 
 def complexion(model: HeadModel, covered: Floats) -> Floats:
-    """``(V, 4)`` 0..1: redness, tint of the eye socket, gloss of forehead and nose, and ``covered (V,)``: under hair."""
+    """``(V, 4)`` 0..1: redness, tint of the eye socket, gloss of forehead and nose, and ``covered (V,)`` by hair."""
     at = model.landmarks
     unit = at.eye_separation
+    up = np.array([0, unit, 0], np.float32)
     mirrored = model.vertices * np.array([1, 1, 1], np.float32)
     mirrored[:, 0] = np.abs(mirrored[:, 0])
 
@@ -19,15 +20,15 @@ def complexion(model: HeadModel, covered: Floats) -> Floats:
         away = (mirrored - centre) / (unit * np.array(widths, np.float32))
         return np.asarray(np.exp(-(away**2).sum(1)), np.float32)
 
-    eye = np.array(model.eyes.centre, np.float32) + [0, 0, model.eyes.radius]
+    eye = at["pupil_l"]
     cheek = 0.45 * at["cheekbone_l"] + 0.35 * at["infraorbital_l"] + 0.20 * at["alare_l"]
-    red = 0.40 * spot(cheek - [0, 0.10 * unit, 0], (0.38, 0.30, 0.6))
+    red = 0.40 * spot(cheek - 0.10 * up, (0.38, 0.30, 0.6))
     red += 0.60 * spot(at["nose_tip"], (0.24, 0.20, 0.4)) + 0.35 * spot(at["alare_l"], (0.14, 0.14, 0.3))
     red += 0.30 * spot(at["pogonion"], (0.32, 0.22, 0.4)) + 0.55 * model.material[:, 3]
-    socket = 0.75 * spot(eye + [0, 0.08 * unit, 0], (0.42, 0.30, 0.4)) + 0.4 * spot(eye - [0, 0.24 * unit, 0], (0.30, 0.10, 0.4))
+    socket = 0.75 * spot(eye + 0.08 * up, (0.42, 0.30, 0.4)) + 0.4 * spot(eye - 0.24 * up, (0.30, 0.10, 0.4))
     brow = 0.5 * (at["brow_inner_l"] + at["glabella"])
-    gloss = spot(brow + [0, 0.35 * unit, 0], (0.55, 0.5, 0.8)) + spot(0.5 * (at["nasion"] + at["nose_tip"]), (0.12, 0.5, 0.6))
-    return np.clip(np.stack([red, socket, gloss, covered], axis=1), 0, 1).astype(np.float32)
+    gloss = spot(brow + 0.35 * up, (0.55, 0.5, 0.8)) + spot(0.5 * (at["nasion"] + at["nose_tip"]), (0.12, 0.5, 0.6))
+    return np.asarray(np.clip(np.stack([red, socket, gloss, covered], axis=1), 0, 1), np.float32)
 
 
 def blurred(normals: Floats, triangles: np.typing.NDArray[np.int32], times: int) -> Floats:

@@ -28,7 +28,8 @@ def open_context() -> Any:
     import moderngl
 
     try:
-        return moderngl.create_context(standalone=True, backend="egl", require=330)
+        settings: Any = {"standalone": True, "backend": "egl", "require": 330}
+        return moderngl.create_context(**settings)
     except Exception as error:  # the loader raises whatever the system's libraries gave it
         raise GraphicsError(_NO_EGL.format(reason=str(error).strip() or type(error).__name__)) from error
 
@@ -92,7 +93,8 @@ def compile_program(context: Any, vertex: str, fragment: str | None, folder: Pat
         sources.append(read_source(fragment, folder))
     try:
         return context.program(
-            vertex_shader=sources[0].text, fragment_shader=sources[1].text if fragment else "#version 330 core\nvoid main() {}\n"
+            vertex_shader=sources[0].text,
+            fragment_shader=sources[1].text if fragment else "#version 330 core\nvoid main() {}\n",
         )
     except moderngl.Error as error:
         _explain(str(error), vertex, fragment, sources)

@@ -14,10 +14,30 @@ from agentface.view.ribbons import Hairs, Roots, unit_rows
 # The hairline over the azimuth about the head's vertical axis: 0 the forehead, 180 the nape; heights over the eyes
 # in distances between the pupils.
 _AZIMUTH_DEG = (0, 12, 24, 32, 38, 43, 47, 51, 55, 59, 63, 67, 84, 90, 97, 105, 118, 150, 180)
-_HEIGHT = (1.0, 1.0, 0.985, 0.94, 0.83, 0.64, 0.40, 0.10, -0.22, -0.38, -0.10, 0.12, 0.12, -0.12, -0.50, -0.85, -1.05, -1.18, -1.22)
+_HEIGHT = (
+    1.0,
+    1.0,
+    0.985,
+    0.94,
+    0.83,
+    0.64,
+    0.40,
+    0.10,
+    -0.22,
+    -0.38,
+    -0.10,
+    0.12,
+    0.12,
+    -0.12,
+    -0.50,
+    -0.85,
+    -1.05,
+    -1.18,
+    -1.22,
+)
 _AXIS_Z = -0.69
 _BAND = 0.010
-_EDGE_HAIRS = {"tied": 2000, "cropped": 0, "none": 0}
+_EDGE_HAIRS = {"tied": 1700, "cropped": 0, "none": 0}
 
 
 class Hairline:
@@ -74,7 +94,9 @@ def scalp_cap(model: HeadModel, line: Hairline, look: HairLook) -> Anchored:
     away = lifted - knot_of(model)
     strand = np.arctan2(away[:, 0], away[:, 1] + 0.03)
     along = np.linalg.norm(away, axis=1) * 10
-    material = np.column_stack([strand, along, np.clip((depth + 0.002) / 0.030, 0, 1), np.clip(1.3 * light[:, 0], 0, 1)])
+    material = np.column_stack(
+        [strand, along, np.clip((depth + 0.002) / 0.030, 0, 1), np.clip(1.3 * light[:, 0], 0, 1)]
+    )
     return Anchored(lifted, vertex_normals(lifted, triangles), triangles, anchors, material.astype(np.float32))
 
 
@@ -89,8 +111,11 @@ def _thickness(places: Floats, depth: Doubles, style: str) -> Doubles:
 def edge_hairs(model: HeadModel, normals: Floats, line: Hairline, look: HairLook, rng: np.random.Generator) -> Hairs:
     """Fine hairs along the hairline, that soften the edge of the surface."""
     count = _EDGE_HAIRS[look.style]
-    near = np.abs(line.over(model)) < 2.5 * _BAND
-    chosen = model.triangles[near[model.triangles].any(1) & (model.vertices[model.triangles, 2].min(1) > 0.0)]
+    # over the forehead and down the temples; the surface alone ends softly enough elsewhere
+    near = (
+        (np.abs(line.over(model)) < 2.5 * _BAND) & (model.vertices[:, 2] > 0) & (model.vertices[:, 1] > 0.3 * line.unit)
+    )
+    chosen = model.triangles[near[model.triangles].all(1)]
     a, b, c = (model.vertices[chosen[:, corner]] for corner in range(3))
     area = np.linalg.norm(np.cross(b - a, c - a), axis=1)
     drawn = rng.choice(len(chosen), 8 * count, p=area / area.sum())
@@ -98,7 +123,9 @@ def edge_hairs(model: HeadModel, normals: Floats, line: Hairline, look: HairLook
     weights = np.stack([1 - u, u * (1 - v), u * v], axis=1)
     places = (model.vertices[chosen[drawn]] * weights[..., None]).sum(1)
     depth = line.behind(places)
-    kept = np.flatnonzero((depth > -0.15 * _BAND - 0.25 * _BAND * rng.random(8 * count) ** 2) & (depth < 0.8 * _BAND))[:count]
+    kept = np.flatnonzero((depth > -0.15 * _BAND - 0.25 * _BAND * rng.random(8 * count) ** 2) & (depth < 0.8 * _BAND))[
+        :count
+    ]
     roots = Roots(chosen[drawn[kept]], weights[kept].astype(np.float32))
     places, n = places[kept], roots.frames(model.vertices, normals)[1][:, :, 2]
     bends, tips = _combed(model, places, n, look.style, rng)
@@ -108,7 +135,9 @@ def edge_hairs(model: HeadModel, normals: Floats, line: Hairline, look: HairLook
     return Hairs.grown(roots, (model.vertices, normals), bends, tips, radii, paint)
 
 
-def _combed(model: HeadModel, places: Doubles, n: Doubles, style: str, rng: np.random.Generator) -> tuple[Doubles, Doubles]:
+def _combed(
+    model: HeadModel, places: Doubles, n: Doubles, style: str, rng: np.random.Generator
+) -> tuple[Doubles, Doubles]:
     """Control points of hairs at ``places`` with the skin's normals ``n``."""
     count = len(places)
     flow = knot_of(model) - places

@@ -11,7 +11,12 @@ SIDE = 32
 
 def noise_volume(rng: np.random.Generator) -> Bytes:
     """``(32, 32, 32, 4)`` bytes that tile: two fractals, then two single octaves; means near 127."""
-    channels = [_fractal(rng, (4, 8, 16, 32)), _fractal(rng, (4, 8, 16, 32)), _fractal(rng, (16,)), _fractal(rng, (16,))]
+    channels = [
+        _fractal(rng, (4, 8, 16, 32)),
+        _fractal(rng, (4, 8, 16, 32)),
+        _fractal(rng, (16,)),
+        _fractal(rng, (16,)),
+    ]
     return np.stack([np.clip(127.5 + 127.5 * channel, 0, 255).astype(np.uint8) for channel in channels], axis=-1)
 
 

@@ -16,7 +16,7 @@ def vertex_normals(vertices: Floats | Doubles, triangles: Indices) -> Floats:
     corners, weights = triangles.T.ravel(), np.tile(faces, (3, 1))
     sums = np.stack([np.bincount(corners, weights[:, axis], len(vertices)) for axis in range(3)], axis=1)
     length = np.linalg.norm(sums, axis=1, keepdims=True)
-    return (sums / np.maximum(length, 1e-12)).astype(np.float32)
+    return np.asarray(sums / np.maximum(length, 1e-12), np.float32)
 
 
 @dataclass(frozen=True, slots=True)

@@ -14,20 +14,23 @@ from agentface.view.anchored import AnchoredArray, eye_linings
 from agentface.view.brows import BrowLine, brow_hairs, lash_hairs
 from agentface.view.camera import Camera, named_view
 from agentface.view.context import compile_program, open_context
-from agentface.view.frame import pack_frame
+from agentface.view.frame import pack_frame, shadow_projection
 from agentface.view.hair import Hairline, edge_hairs, knot_of, scalp_cap
 from agentface.view.look import Look, load_look
 from agentface.view.noise import SIDE, noise_volume
 from agentface.view.parts import Eyeball, RigidPart
 from agentface.view.refine import vertex_normals
 from agentface.view.ribbons import HairArray
+from agentface.view.shadow import KeyShadow
 from agentface.view.shirt import shirt
 from agentface.view.skin import Skin, SkinFields
-from agentface.view.targets import KeyShadow, Targets
+from agentface.view.targets import Targets
 
 QUALITIES: dict[str, int] = {"fast": 0, "portrait": 4}
 """Name of a quality: samples a pixel (0: one, not resolved)."""
-SHADOW_TAPS = {"fast": 4, "portrait": 16}
+SHADOW_TAPS = {"fast": 0, "portrait": 16}
+"""Looks into the key light's depths a pixel; 0: the shadow of the face at rest, by vertex."""
+HAIR_SHARE = {"fast": 0.5, "portrait": 1.0}
 LARGEST_SIDE = 8192
 _SEED = 20
 _FRAME_BYTES = 3 * 64 + 11 * 16
@@ -53,36 +56,42 @@ class Renderer:
         self._frame = self.context.buffer(reserve=_FRAME_BYTES)
         rng = np.random.default_rng(_SEED)
         self._noise = self.context.texture3d((SIDE,) * 3, 4, noise_volume(rng).tobytes())
-        self._programs = {name: self._compile(f"{name}.vert.glsl", f"{name}.frag.glsl") for name in ("skin", "part", "eye", "ribbon")}
+        self._programs = {
+            name: self._compile(f"{name}.vert.glsl", f"{name}.frag.glsl") for name in ("skin", "part", "eye", "ribbon")
+        }
         self._programs["lining"] = self._compile("anchored.vert.glsl", "part.frag.glsl")
         self._programs["cap"] = self._compile("anchored.vert.glsl", "cap.frag.glsl")
         self._depth = self._compile("depth.vert.glsl", None)
         self._develop = self._compile("screen.vert.glsl", "develop.frag.glsl")
         self._screen = self.context.vertex_array(self._develop, [])
         self._fields = SkinFields(self.context, len(model.vertices))
-        covered = self._covered()
+        normals = vertex_normals(model.vertices, model.triangles)
+        self._shadow = KeyShadow(self.context, self._depth, model)
+        lit, covered = self._lit_at_rest(normals), self._covered()
         self._skins = {
-            name: Skin(self.context, self._programs["skin"], self._depth, model, covered, fine=samples > 0)
+            name: Skin(self.context, self._programs["skin"], model, covered, lit, fine=samples > 0)
             for name, samples in QUALITIES.items()
         }
-        self._shadow = KeyShadow(self.context)
         self._parts = {name: self._part(name) for name in ("teeth_upper", "teeth_lower", "tongue")}
         self._eyes = [Eyeball(self.context, self._programs["eye"], model, side) for side in "lr"]
         self._parts["shirt"] = self._shirt()
-        self._linings = [AnchoredArray(self.context, self._programs["lining"], mesh, model.vertices) for mesh in eye_linings(model)]
-        normals = vertex_normals(model.vertices, model.triangles)
+        self._linings = [
+            AnchoredArray(self.context, self._programs["lining"], mesh, model.vertices) for mesh in eye_linings(model)
+        ]
         hair = self.look.hair
         self._hairs = [
             HairArray(self.context, self._programs["ribbon"], brow_hairs(model, normals, hair, rng), 0.35),
             HairArray(self.context, self._programs["ribbon"], lash_hairs(model, normals, hair, rng), 0.1),
         ]
-        self._cap = None
+        self._cap = self._edge = None
         if hair.style != "none":
             line = Hairline(model, hair.hairline)
             self._cap = AnchoredArray(self.context, self._programs["cap"], scalp_cap(model, line, hair), model.vertices)
             edge = edge_hairs(model, normals, line, hair, rng)
             if len(edge):
-                self._hairs.append(HairArray(self.context, self._programs["ribbon"], edge, 0.5))
+                self._edge = HairArray(self.context, self._programs["ribbon"], edge, 0.5)
+        ring = model.lips.rings[0]
+        self._lips = [half[len(half) // 2 - 2 : len(half) // 2 + 3] for half in (ring.upper, ring.lower)]
         self._set_look()
 
     def render(
@@ -108,7 +117,9 @@ class Renderer:
         pixels = np.frombuffer(targets.picture.read(components=3, alignment=1), np.uint8)
         return np.ascontiguousarray(pixels.reshape(height, width, 3)[::-1])
 
-    def draw(self, geometry: FaceGeometry, targets: Targets, camera: Camera | str, quality: str, onto: Any = None) -> None:
+    def draw(
+        self, geometry: FaceGeometry, targets: Targets, camera: Camera | str, quality: str, onto: Any = None
+    ) -> None:
         """Draw into ``targets`` and develop into its picture, or into the framebuffer ``onto``."""
         import moderngl
 
@@ -119,7 +130,8 @@ class Renderer:
         self._fields.update(geometry)
         self._fields.texture.use(0)
         self._noise.use(1)
-        self._shadow.draw(self._skins["fast"].outline)
+        if SHADOW_TAPS[quality]:
+            self._shadow.draw()
         self._shadow.use(2)
         _set(self._programs["skin"], {"shadow_taps": SHADOW_TAPS[quality]})
         targets.scene.use()
@@ -127,11 +139,18 @@ class Renderer:
         context.enable_only(moderngl.DEPTH_TEST)
         self._draw_solids(geometry, quality)
         context.enable_only(moderngl.DEPTH_TEST | moderngl.BLEND)
-        context.blend_func = (moderngl.SRC_ALPHA, moderngl.ONE_MINUS_SRC_ALPHA, moderngl.ONE, moderngl.ONE_MINUS_SRC_ALPHA)
+        context.blend_func = (
+            moderngl.SRC_ALPHA,
+            moderngl.ONE_MINUS_SRC_ALPHA,
+            moderngl.ONE,
+            moderngl.ONE_MINUS_SRC_ALPHA,
+        )
         if self._cap is not None:
             self._cap.draw()
         for hairs in self._hairs:
             hairs.draw()
+        if self._edge is not None:
+            self._edge.draw(HAIR_SHARE[quality])
         if targets.samples:
             context.copy_framebuffer(targets.resolved, targets.scene)
         context.enable_only(moderngl.NOTHING)
@@ -142,6 +161,8 @@ class Renderer:
         self._screen.render(moderngl.TRIANGLES, 3)
 
     def _draw_solids(self, geometry: FaceGeometry, quality: str) -> None:
+        for name in ("part", "skin"):
+            self._programs[name]["mouth_light"].value = self._mouth_light(geometry)
         self._skins[quality].draw()
         self._parts["teeth_upper"].draw(geometry.head)
         for name in ("teeth_lower", "tongue"):
@@ -163,16 +184,32 @@ class Renderer:
 
     def _part(self, name: str) -> RigidPart:
         mesh = self.model.parts[name]
-        material = mesh.attributes["_MATERIAL"].astype(np.float32) / 255
+        material = mesh.attributes["_MATERIAL"].astype(np.float32) / np.float32(255)
         material[:, 3] = 0.0
         return RigidPart(self.context, self._programs["part"], mesh.attributes["POSITION"], mesh.triangles, material)
+
+    def _mouth_light(self, geometry: FaceGeometry) -> float:
+        """The part of the light that reaches the teeth: all through a mouth open by a finger, little through a slit."""
+        upper, lower = (geometry.vertices[ring, 1] for ring in self._lips)
+        gap = float(np.max(upper) - np.min(lower)) / (0.12 * self.model.landmarks.eye_separation)
+        return min(1.0, 0.25 + 0.75 * max(0.0, gap))
+
+    def _lit_at_rest(self, normals: Floats) -> Floats:
+        model, lights = self.model, self.look.lights
+        geometry = FaceGeometry.at_rest(model.vertices, normals)
+        self._frame.write(pack_frame(named_view(model, "front"), (1, 1), geometry.head, lights))
+        self._frame.bind_to_uniform_block(_BINDING)
+        self._fields.update(geometry)
+        self._fields.texture.use(0)
+        self._shadow.draw()
+        return self._shadow.lit(model.vertices, normals, shadow_projection(lights))
 
     def _covered(self) -> Floats:
         hair, model = self.look.hair, self.model
         covered = 0.55 * hair.brow_density * BrowLine(model).density(model.vertices)
         if hair.style != "none":
             covered = np.maximum(covered, np.clip((Hairline(model, hair.hairline).over(model) + 0.003) / 0.012, 0, 1))
-        return np.clip(covered, 0, 1).astype(np.float32)
+        return np.asarray(np.clip(covered, 0, 1), np.float32)
 
     def _shirt(self) -> RigidPart:
         vertices, triangles = shirt(self.model)
@@ -182,10 +219,10 @@ class Renderer:
     def _set_look(self) -> None:
         look, front = self.look, float(self.model.landmarks["upper_lip_middle"][2])
         values: dict[str, dict[str, Any]] = {
-            "skin": {"skin_tone": look.skin.tone, "lip_tint": look.skin.lips, "shine": look.skin.shine, "mouth_front": front,
-                     "hair_colour": look.hair.colour},
+            "skin": {"skin_tone": look.skin.tone, "lip_tint": look.skin.lips, "shine": look.skin.shine,
+                     "mouth_front": front, "hair_colour": look.hair.colour},
             "part": {"mouth_front": front, "cloth": look.cloth},
-            "lining": {"mouth_front": front, "cloth": look.cloth},
+            "lining": {"mouth_front": front, "mouth_light": 1.0, "cloth": look.cloth},
             "cap": {"hair_colour": look.hair.colour, "knot": knot_of(self.model).tolist(), "grey": look.hair.grey,
                     "cropped": float(look.hair.style == "cropped")},
             "eye": {"iris_inner": look.eyes.iris_inner, "iris_outer": look.eyes.iris_outer, "sclera": look.eyes.sclera,
@@ -193,7 +230,11 @@ class Renderer:
         }  # fmt: skip
         for name, rows in values.items():
             _set(self._programs[name], rows)
-        developed = {"background_inner": look.background_inner, "background_outer": look.background_outer, "exposure": look.exposure}
+        developed = {
+            "background_inner": look.background_inner,
+            "background_outer": look.background_outer,
+            "exposure": look.exposure,
+        }
         _set(self._develop, developed)
 
     def _targets_for(self, size: tuple[int, int], quality: str) -> Targets:

@@ -74,24 +74,23 @@ class HairArray:
         sides = np.tile([-1.0, 1.0], _POINTS)
         count = len(hairs)
         each = 2 * _POINTS
-        stroke = np.stack(
-            [np.tile(steps, count), np.tile(sides, count), np.repeat(hairs.radii, each)], axis=1
-        )
+        stroke = np.stack([np.tile(steps, count), np.tile(sides, count), np.repeat(hairs.radii, each)], axis=1)
         rows = [np.repeat(field, each, axis=0) for field in (hairs.roots.weights, hairs.bends, hairs.tips)]
         floats = np.concatenate([*rows, stroke, np.repeat(hairs.paint, each, axis=0)], axis=1).astype(np.float32)
         corners = np.repeat(hairs.roots.corners, each, axis=0).astype(np.int32)
         quads = (np.arange(count)[:, None] * each + 2 * np.arange(_POINTS - 1)).reshape(-1, 1)
-        triangles = np.concatenate([quads + [0, 1, 2], quads + [1, 3, 2]], axis=1).reshape(-1, 3).astype(np.int32)
+        triangles = (quads + np.array([0, 1, 2, 1, 3, 2])).reshape(-1, 3).astype(np.int32)
         layout = [
             (context.buffer(corners.tobytes()), "3i", "corners"),
             (context.buffer(floats.tobytes()), "3f 3f 3f 3f 4f", "weights", "bend", "tip", "stroke", "paint"),
         ]
+        self.count = count
         self.array = context.vertex_array(program, layout, context.buffer(triangles.tobytes()))
 
-    def draw(self) -> None:
-        """Draw them where the skin is."""
+    def draw(self, share: float = 1.0) -> None:
+        """Draw them, or the first ``share`` 0..1 of them, where the skin is."""
         self.program["gloss"].value = self.gloss
-        self.array.render()
+        self.array.render(vertices=6 * (_POINTS - 1) * max(1, round(share * self.count)))
 
 
 def unit_rows(rows: Doubles | Floats) -> Doubles:
@@ -100,7 +99,7 @@ def unit_rows(rows: Doubles | Floats) -> Doubles:
 
 
 def roots_in_front(points: Doubles, vertices: Floats, triangles: Indices) -> Roots:
-    """Roots on the front-most triangle at each place ``points (N, 2)`` (x, y); places off the mesh take the nearest one."""
+    """Roots on the front-most triangle at each place ``points (N, 2)`` (x, y); places off it take the nearest."""
     a, b, c = (vertices[triangles[:, corner]].astype(np.float64) for corner in range(3))
     u, v = (b - a)[:, :2], (c - a)[:, :2]
     area = u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0]

@@ -15,7 +15,9 @@ _DROP = 0.22
 def shirt(model: HeadModel) -> tuple[Floats, Indices]:
     """Vertices ``(N, 3)`` metres and triangles."""
     chin = float(model.landmarks["menton"][1])
-    neck = model.vertices[(model.vertices[:, 1] < chin - 0.008) & (model.vertices[:, 2] < model.landmarks["menton"][2] - 0.025)]
+    neck = model.vertices[
+        (model.vertices[:, 1] < chin - 0.008) & (model.vertices[:, 2] < model.landmarks["menton"][2] - 0.025)
+    ]
     axis_z = 0.5 * float(neck[:, 2].min() + neck[:, 2].max())
     turn = np.linspace(0, 2 * np.pi, _AROUND, endpoint=False)  # 0 the person's left, a quarter the front
     front = np.sin(turn)

@@ -32,7 +32,9 @@ class SkinFields:
         expected = (self.count, 3)
         for name in ("vertices", "normals"):
             if getattr(geometry, name).shape != expected:
-                raise InvalidValueError(f"geometry.{name}", f"an array of shape {expected}", getattr(geometry, name).shape)
+                raise InvalidValueError(
+                    f"geometry.{name}", f"an array of shape {expected}", getattr(geometry, name).shape
+                )
         self._texels[0, : self.count, :3] = geometry.vertices
         self._texels[0, : self.count, 3] = geometry.wrinkles
         self._texels[1, : self.count, :3] = geometry.normals
@@ -42,7 +44,9 @@ class SkinFields:
 class Skin:
     """The skin's static buffers, as it is or (``fine``) with every triangle cut into four curved ones."""
 
-    def __init__(self, context: Any, program: Any, depth_program: Any, model: HeadModel, covered: Floats, *, fine: bool) -> None:
+    def __init__(
+        self, context: Any, program: Any, model: HeadModel, covered: Floats, lit: Floats, *, fine: bool
+    ) -> None:
         count = len(model.vertices)
         mesh = refine(model.triangles, count) if fine else unrefined(model.triangles, count)
         normals = vertex_normals(model.vertices, model.triangles)
@@ -53,13 +57,13 @@ class Skin:
             ("material", model.material),
             ("complexion", complexion(model, covered)),
             ("ambient", model.shade[:, :1]),
+            ("lit_at_rest", lit),
         )
         layout = [(context.buffer(mesh.ends.tobytes()), "2i", "ends")]
         for name, field in fields:
             layout.append((context.buffer(mesh.mean(field).tobytes()), f"{field.shape[1]}f", name))
         triangles = context.buffer(mesh.triangles.astype(np.int32).tobytes())
         self.array = context.vertex_array(program, layout, triangles)
-        self.outline = context.vertex_array(depth_program, layout[:1], triangles)
 
     def draw(self) -> None:
         """Draw it where ``SkinFields`` has it."""

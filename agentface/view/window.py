@@ -50,7 +50,7 @@ class ShownFace(Protocol):
     def emotion(self) -> Mapping[str, float]:
         """The target intensities by name."""
 
-    def set_emotion(self, emotion: Any, value: Any = None, *, fade: float | None = None) -> None:
+    def set_emotion(self, emotion: Any, intensity: Any = None, *, fade: float = FADE_S) -> None:
         """Change the target state."""
 
     def step(self, dt: float) -> FaceGeometry:
@@ -172,11 +172,17 @@ class Window:
     def _open(self, size: tuple[int, int]) -> Any:
         glfw = self.glfw
         reasons: list[str] = []
-        glfw.set_error_callback(lambda _code, text: reasons.append(text.decode() if isinstance(text, bytes) else str(text)))
+        glfw.set_error_callback(
+            lambda _code, text: reasons.append(text.decode() if isinstance(text, bytes) else str(text))
+        )
         handle = None
         if glfw.init():
             hints = ((glfw.CONTEXT_VERSION_MAJOR, 3), (glfw.CONTEXT_VERSION_MINOR, 3), (glfw.SAMPLES, 0))
-            for hint, value in (*hints, (glfw.OPENGL_PROFILE, glfw.OPENGL_CORE_PROFILE), (glfw.OPENGL_FORWARD_COMPAT, True)):
+            for hint, value in (
+                *hints,
+                (glfw.OPENGL_PROFILE, glfw.OPENGL_CORE_PROFILE),
+                (glfw.OPENGL_FORWARD_COMPAT, True),
+            ):
                 glfw.window_hint(hint, value)
             handle = glfw.create_window(*size, "agentface", None, None)
         if not handle:

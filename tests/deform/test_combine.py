@@ -7,9 +7,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
+from agentface.anatomy.muscle_set import FALLOFFS, MuscleSet
 from agentface.deform.blocks import LANES, movable, pack
 from agentface.deform.combine import METHODS, REFERENCE, STEP, Combiner, parallel, sequential, summed
-from agentface.deform.vector_muscle import FALLOFFS, MuscleSet
 from agentface.errors import InvalidValueError, UnknownNameError
 from tests.deform.rig import make_rig
 

@@ -7,7 +7,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from agentface.deform.vector_muscle import FALLOFFS, MuscleSet, angular, displacement, radial
+from agentface.anatomy.muscle_set import FALLOFFS, MuscleSet
+from agentface.deform.vector_muscle import angular, displacement, pull, radial
 from agentface.errors import InvalidValueError, UnknownNameError
 
 ORIGIN, INSERTION = np.array([0.0, 0.05, 0.0]), np.array([0.0, 0.0, 0.01])
@@ -153,7 +154,7 @@ def test_a_set_refuses_an_unknown_fall_off():
 def test_reach_scales_the_displacement():
     muscles = make_set(reach=np.linspace(0, 1, 5, dtype=np.float32) * np.ones((2, 1), np.float32))
     points = np.tile([0.03, 0.001, 0.0], (5, 1))
-    moved = muscles.displacement(points, 0, 1.0)
-    whole = dataclasses.replace(muscles, reach=np.ones((2, 5), np.float32)).displacement(points, 0, 1.0)
+    moved = pull(muscles, 0, points, 1.0)
+    whole = pull(dataclasses.replace(muscles, reach=np.ones((2, 5), np.float32)), 0, points, 1.0)
     assert whole.all(axis=0)[0]
     np.testing.assert_allclose(moved, whole * np.linspace(0, 1, 5)[:, None], atol=1e-15)

@@ -36,7 +36,7 @@ class Desk:
 
     @property
     def state(self):
-        return self.face.explain().state
+        return self.face.emotion
 
 
 @pytest.fixture(scope="module")

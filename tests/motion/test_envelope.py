@@ -10,7 +10,7 @@ from agentface.motion.envelope import Envelope
 fractions = st.floats(0, 1, width=32)
 fades = st.floats(0.02, 1.0)
 moves = st.lists(st.tuples(fractions, fades, st.floats(0.0, 1.5)), min_size=1, max_size=6)
-STEP = 2e-3
+STEP = 4e-3
 
 
 def run(envelope: Envelope, seconds: float) -> np.ndarray:

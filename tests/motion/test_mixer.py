@@ -32,10 +32,10 @@ def test_no_muscle_jumps_between_emotions(plan):
     shortest = min((fade for _, _, fade, _ in plan), default=1.0)
     for emotion, intensity, fade, seconds in plan:
         mixer.emotion.change({emotion: intensity}, fade, hold=0.1)
-        for _ in range(round(seconds / 0.01)):
-            mixer.advance(0.01)
+        for _ in range(round(seconds / 0.02)):
+            mixer.advance(0.02)
             now = mixer.pose().values
-            assert np.abs(now - before).max() <= 2.0 * 1.875 / shortest * 0.01 + 1e-6
+            assert np.abs(now - before).max() <= 2.0 * 1.875 / shortest * 0.02 + 1e-6
             before = now
 
 

@@ -19,7 +19,7 @@ from agentface.conventions import Doubles, Indices
 
 _FACE, _BAG, _BODY, _SOCKETS = 0, 1, 2, {"r": 3, "l": 6}
 _NECK_BOTTOM = 5.6
-_THINNED, _THINNED_EARS = 170, 100
+_THINNED, _THINNED_EARS = 120, 60
 _SMALLEST_OFFSET = 5e-6
 METRES = 0.1
 
@@ -77,7 +77,8 @@ class HeadTopology:
         wanted[(y > 6.3) & (y < 7.15) & (x > 0.12) & (x < 0.50) & (z > 1.0)] = 0.040
         wanted[(y > 7.12) & (y < 7.40) & (x > 0.43) & (x < 0.64) & (z > 0.85)] = 0.030
         wanted[(y > 7.18) & (y <= 7.46) & (x < 0.14) & (z > 1.2)] = 0.026
-        wanted[(y > 7.44) & (y < 7.92) & (z > 0.92) & (x < 0.58)] = 0.0195
+        wanted[(y > 7.44) & (y < 7.94) & (z > 0.92) & (x < 0.60)] = 0.036
+        wanted[(y > 7.44) & (y < 7.86) & (z > 0.92) & (x < 0.50)] = 0.0195
         whole = [*self.loops.lips[:8], *(ring for rings in self.loops.lids.values() for ring in rings[:8])]
         wanted[(island == _BAG) | np.isin(self.quads, np.concatenate(whole)).any(1)] = 1e3
         edge = np.linalg.norm(corners - np.roll(corners, 1, 1), axis=2).mean(1)

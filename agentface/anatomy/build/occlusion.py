@@ -16,7 +16,9 @@ _SPACING = 0.0019
 _CLEARANCE = 0.0030
 
 
-def ambient_light(vertices: Doubles, triangles: Indices, mirror: Indices, blockers: list[tuple[Doubles, Indices]]) -> Doubles:
+def ambient_light(
+    vertices: Doubles, triangles: Indices, mirror: Indices, blockers: list[tuple[Doubles, Indices]]
+) -> Doubles:
     """``(V,)`` 0..1: the part of a cosine-weighted sky that the skin's vertices see.
 
     Args:
@@ -42,7 +44,8 @@ def half_sphere(count: int) -> Doubles:
     steps = np.arange(count) + 0.5
     polar, turn = np.arccos(1 - 2 * steps / count), np.pi * (1 + 5**0.5) * steps
     points = np.stack([np.cos(turn) * np.sin(polar), np.cos(polar), np.sin(turn) * np.sin(polar)], axis=1)
-    return np.abs(points) * np.where(np.arange(3) == 0, 1.0, np.sign(points))
+    points[:, 0] = np.abs(points[:, 0])
+    return points
 
 
 def _normals(vertices: Doubles, triangles: Indices) -> Doubles:

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import socket
+import struct
+import sys
 import threading
 from collections import deque
 from types import TracebackType
@@ -75,7 +77,7 @@ class OscServer:
             try:
                 # One byte more than allowed shows that a datagram is too long without taking all of it in.
                 self._waiting.append(self._socket.recvfrom(LARGEST_DATAGRAM + 1))
-            except TimeoutError:
+            except BlockingIOError:
                 continue
             except OSError:
                 # For example the port of an earlier answer's receiver is closed; the next datagram may be well.
@@ -103,6 +105,16 @@ def _bind(host: str, port: int) -> socket.socket:
         raise ServerError(
             f"OSC server: expected port {port} of {host} to be free: {error.strerror}; {advice}"
         ) from error
-    listener.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, _SOCKET_BUFFER)
-    listener.settimeout(0.1)
+    _enlarge(listener)
+    # The system's own time limit costs one call a datagram, Python's costs two, and each gives the thread's turn away.
+    listener.setsockopt(socket.SOL_SOCKET, socket.SO_RCVTIMEO, struct.pack("@ll", 0, 100_000))
     return listener
+
+
+def _enlarge(listener: socket.socket) -> None:
+    """As large a buffer as the system grants, for what arrives while a picture is drawn."""
+    force = getattr(socket, "SO_RCVBUFFORCE", 33 if sys.platform == "linux" else socket.SO_RCVBUF)
+    try:
+        listener.setsockopt(socket.SOL_SOCKET, force, _SOCKET_BUFFER)
+    except OSError:
+        listener.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, _SOCKET_BUFFER)

@@ -1,0 +1,85 @@
+import pytest
+
+from agentface.errors import GraphicsError
+from agentface.resources import data_folder
+from agentface.view.context import compile_program, open_context, read_source
+
+NOTHING = "#version 330 core\nvoid main() { gl_Position = vec4(0.0); }\n"
+
+
+@pytest.fixture(scope="module")
+def context():
+    context = open_context()
+    yield context
+    context.release()
+
+
+def test_includes_are_put_in_once_and_lines_are_kept(tmp_path):
+    (tmp_path / "a.glsl").write_text('#include "b.glsl"\nfloat a;\n')
+    (tmp_path / "b.glsl").write_text("float b;\n")
+    (tmp_path / "main.glsl").write_text('#version 330 core\n#include "a.glsl"\n#include "b.glsl"\nfloat c;\n')
+    source = read_source("main.glsl", tmp_path)
+    lines = source.text.split("\n")
+    assert [line for line in lines if line.startswith("float")] == ["float b;", "float a;", "float c;"]
+    assert lines.index("#line 3 0") < lines.index("float c;")
+    assert [path.name for path in source.files] == ["main.glsl", "a.glsl", "b.glsl"]
+
+
+def test_a_missing_include_names_the_line_that_wants_it(tmp_path):
+    (tmp_path / "main.glsl").write_text('#version 330 core\n\n#include "nowhere.glsl"\n')
+    with pytest.raises(GraphicsError, match=r"main\.glsl:3: .*nowhere\.glsl"):
+        read_source("main.glsl", tmp_path)
+
+
+@pytest.mark.gl
+@pytest.mark.parametrize(
+    ("main", "included", "where"),
+    [
+        (
+            '#version 330 core\n#include "part.glsl"\nout vec4 c;\nvoid main() { c = nothing; }\n',
+            "float x;\n",
+            "main.frag.glsl:4",
+        ),
+        (
+            '#version 330 core\n#include "part.glsl"\nout vec4 c;\nvoid main() { c = f(); }\n',
+            "\n\nvec4 f() { return 1 }\n",
+            "part.glsl:3",
+        ),
+    ],
+)
+def test_a_compiler_error_is_mapped_to_its_file_and_line(context, tmp_path, main, included, where):
+    (tmp_path / "pass.glsl").write_text(NOTHING)
+    (tmp_path / "main.frag.glsl").write_text(main)
+    (tmp_path / "part.glsl").write_text(included)
+    with pytest.raises(GraphicsError) as caught:
+        compile_program(context, "pass.glsl", "main.frag.glsl", tmp_path)
+    assert where in str(caught.value)
+
+
+@pytest.mark.gl
+def test_every_shader_compiles(context):
+    fragments = {
+        "ribbon": ["ribbon"],
+        "skin": ["skin"],
+        "part": ["part"],
+        "eye": ["eye"],
+        "anchored": ["part", "cap"],
+        "screen": ["develop"],
+    }
+    folder = data_folder("shaders")
+    assert {path.name.split(".")[0] for path in folder.glob("*.vert.glsl")} == {*fragments, "depth"}
+    for vertex, used in fragments.items():
+        for fragment in used:
+            compile_program(context, f"{vertex}.vert.glsl", f"{fragment}.frag.glsl").release()
+    compile_program(context, "depth.vert.glsl", None).release()
+
+
+def test_without_opengl_the_error_names_the_packages(monkeypatch):
+    import moderngl
+
+    def refuse(**_):
+        raise Exception("libEGL.so not loaded")
+
+    monkeypatch.setattr(moderngl, "create_context", refuse)
+    with pytest.raises(GraphicsError, match=r"(?s)libEGL\.so not loaded.*apt-get install .*libegl1 libgl1"):
+        open_context()

@@ -1,0 +1,123 @@
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from agentface.anatomy.model import load_model
+from agentface.view.brows import BrowLine, brow_hairs, lash_hairs
+from agentface.view.hair import Hairline, edge_hairs, scalp_cap
+from agentface.view.look import load_look
+from agentface.view.refine import vertex_normals
+from agentface.view.ribbons import roots_along, roots_in_front
+
+
+@pytest.fixture(scope="module", params=["amber", "onyx"])
+def grown(request):
+    model = load_model(request.param)
+    look = load_look(model).hair
+    normals = vertex_normals(model.vertices, model.triangles)
+    rng = np.random.default_rng(1)
+    return model, look, normals, [brow_hairs(model, normals, look, rng), lash_hairs(model, normals, look, rng)]
+
+
+def turned(angles):
+    (sx, sy, sz), (cx, cy, cz) = np.sin(angles), np.cos(angles)
+    return (
+        np.array([[1, 0, 0], [0, cx, -sx], [0, sx, cx]])
+        @ np.array([[cy, 0, sy], [0, 1, 0], [-sy, 0, cy]])
+        @ np.array([[cz, -sz, 0], [sz, cz, 0], [0, 0, 1]])
+    )
+
+
+@settings(max_examples=20)
+@given(st.tuples(*[st.floats(-3, 3)] * 3), st.tuples(*[st.floats(-1, 1)] * 3), st.floats(0, 1))
+def test_hairs_move_rigidly_with_a_rigid_skin(angles, shift, t):
+    model = load_model("amber")
+    normals = vertex_normals(model.vertices, model.triangles)
+    hairs = brow_hairs(model, normals, load_look(model).hair, np.random.default_rng(1))
+    turn = turned(angles)
+    before = hairs.curve(model.vertices, normals, t)
+    after = hairs.curve((model.vertices @ turn.T + shift).astype(np.float32), (normals @ turn.T).astype(np.float32), t)
+    np.testing.assert_allclose(after, before @ turn.T + shift, atol=2e-6)
+
+
+def test_brows_rise_with_the_skin(grown):
+    model, _, normals, (brows, _) = grown
+    raised = model.vertices + model.shapes["browInnerUp"].dense(len(model.vertices))
+    move = brows.curve(raised, normals, 1.0) - brows.curve(model.vertices, normals, 1.0)
+    inner = np.abs(brows.curve(model.vertices, normals, 0.0)[:, 0]) < model.landmarks["brow_middle_l"][0] * 0.7
+    skin = model.shapes["browInnerUp"].dense(len(model.vertices))[:, 1].max()
+    assert 0.4 * skin < move[inner, 1].mean() < 1.2 * skin
+
+
+def test_brows_lie_where_the_landmarks_are(grown):
+    model, _, normals, (brows, _) = grown
+    roots = brows.curve(model.vertices, normals, 0.0)
+    left = roots[roots[:, 0] > 0]
+    assert len(left) == len(brows) // 2
+    unit = model.landmarks.eye_separation
+    for name in ("inner", "middle", "outer"):
+        away = np.linalg.norm(left - model.landmarks[f"brow_{name}_l"], axis=1)
+        assert away.min() < 0.06 * unit
+    assert abs(left.mean(0)[1] - model.landmarks["brow_middle_l"][1]) < 0.15 * unit
+
+
+def test_brows_grow_out_of_the_skin_and_lashes_away_from_the_eye(grown):
+    model, _, normals, (brows, lashes) = grown
+    roots, axes = brows.roots.frames(model.vertices, normals)
+    assert (((brows.curve(model.vertices, normals, 0.5) - roots) * axes[:, :, 2]).sum(1) > 0).all()
+    roots, tips = (lashes.curve(model.vertices, normals, t) for t in (0.0, 1.0))
+    eyes = np.where(roots[:, :1] > 0, model.eye_centre("l"), model.eye_centre("r"))
+    assert (np.linalg.norm(tips - eyes, axis=1) > np.linalg.norm(roots - eyes, axis=1) + 0.001).all()
+    upper = roots[:, 1] > np.median(roots[:, 1])
+    assert (tips[upper, 1] > roots[upper, 1]).mean() > 0.95
+    for hairs in (brows, lashes):
+        reach = np.linalg.norm(hairs.tips, axis=1)
+        assert reach.min() > 0.001
+        assert reach.max() < 0.014
+
+
+def test_the_same_generator_gives_the_same_hairs(grown):
+    model, look, normals, (brows, _) = grown
+    again = brow_hairs(model, normals, look, np.random.default_rng(1))
+    np.testing.assert_array_equal(again.tips, brows.tips)
+    np.testing.assert_array_equal(again.paint, brows.paint)
+
+
+def test_roots_are_found_where_they_were_asked_for(grown):
+    model, _, _, _ = grown
+    rng = np.random.default_rng(3)
+    line = BrowLine(model)
+    x, y = line.place(rng.random(40))
+    roots = roots_in_front(np.stack([x, y], axis=1), model.vertices, model.triangles)
+    placed = (model.vertices[roots.corners] * roots.weights[..., None]).sum(1)
+    np.testing.assert_allclose(placed[:, :2], np.stack([x, y], axis=1), atol=1e-5)
+    assert (placed[:, 2] > 0.03).all()  # on the face, not on the back of the head
+    np.testing.assert_allclose(roots.weights.sum(1), 1, atol=1e-6)
+
+
+def test_roots_along_a_line_are_spread_by_length():
+    vertices = np.array([[0, 0, 0], [1, 0, 0], [4, 0, 0]], np.float32)
+    roots = roots_along(np.array([0, 1, 2], np.int32), vertices, np.array([0.0, 0.25, 0.5, 1.0]))
+    placed = (vertices[roots.corners] * roots.weights[..., None]).sum(1)
+    np.testing.assert_allclose(placed[:, 0], [0, 1, 2, 4], atol=1e-6)
+
+
+def test_hair_covers_the_crown_and_leaves_the_face_and_ears_free(grown):
+    model, look, normals, _ = grown
+    line = Hairline(model, look.hairline)
+    over = line.over(model)
+    assert over[model.vertices[:, 1].argmax()] > 0.01
+    for name in ("glabella", "brow_outer_l", "brow_outer_r", "cheekbone_l", "nose_tip", "menton", "ear_front_l"):
+        assert line.behind(model.landmarks[name][None])[0] < 0
+    ears = model.vertices[
+        np.abs(model.vertices[:, 0]) > 0.97 * np.abs(model.vertices[model.vertices[:, 1] > -0.06, 0]).max()
+    ]
+    assert len(ears)
+    cap = scalp_cap(model, line, look)
+    assert cap.anchors.shape == (len(cap.vertices), 4)
+    # hair stands off the skin by some millimetres, never under it
+    gap = np.linalg.norm(cap.vertices - model.vertices[cap.anchors].mean(1), axis=1)
+    assert gap.max() < 0.03
+    edge = edge_hairs(model, normals, line, look, np.random.default_rng(2))
+    assert (len(edge) > 0) == (look.style == "tied")

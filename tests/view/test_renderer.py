@@ -1,0 +1,150 @@
+import numpy as np
+import pytest
+from scipy.ndimage import label
+
+from agentface.anatomy.model import load_model
+from agentface.deform.geometry import FaceGeometry
+from agentface.errors import DataError, InvalidValueError, UnknownNameError
+from agentface.view.camera import Camera, named_view
+from agentface.view.look import load_look, read_look
+from agentface.view.refine import vertex_normals
+from agentface.view.renderer import Renderer
+
+pytestmark = pytest.mark.gl
+
+SIZE = (160, 120)
+
+
+def shown(model, **shapes):
+    vertices = model.vertices.copy()
+    for name, weight in shapes.items():
+        vertices += np.float32(weight) * model.shapes[name].dense(len(vertices))
+    return FaceGeometry.at_rest(vertices, vertex_normals(vertices, model.triangles))
+
+
+@pytest.fixture(scope="module", params=["amber", "onyx"])
+def renderer(request):
+    renderer = Renderer(load_model(request.param))
+    yield renderer
+    renderer.context.release()
+
+
+@pytest.mark.parametrize("view", ["front", "three-quarter", "profile"])
+@pytest.mark.parametrize("quality", ["fast", "portrait"])
+def test_pictures_have_the_size_asked_for_and_show_something(renderer, view, quality):
+    picture = renderer.render(shown(renderer.model), SIZE, view, quality)
+    assert picture.shape == (120, 160, 3)
+    assert picture.dtype == np.uint8
+    middle, corner = picture[40:80, 60:100].astype(int), picture[:8, :8].astype(int)
+    assert middle.std() > 10
+    assert middle[..., 0].mean() > corner[..., 0].mean() + 15  # skin is redder than the background
+    assert (picture[:, :, 0].astype(int) > 250).mean() < 0.02  # little is burnt out
+
+
+def test_two_pictures_are_the_same_to_the_byte(renderer):
+    geometry = shown(renderer.model, jawOpen=0.5)
+    first = renderer.render(geometry, SIZE)
+    renderer.render(shown(renderer.model), (64, 64), "profile", "portrait")
+    np.testing.assert_array_equal(renderer.render(geometry, SIZE), first)
+    other = Renderer(renderer.model)
+    np.testing.assert_array_equal(other.render(geometry, SIZE), first)
+    other.context.release()
+
+
+def test_the_top_row_comes_first_and_the_left_of_the_person_is_right(renderer):
+    front = named_view(renderer.model, "front")
+    shown_ = shown(renderer.model)
+    centred = renderer.render(shown_, SIZE).astype(int)
+    risen = Camera(front.eye, (front.target[0], front.target[1] - 0.05, front.target[2]))
+    assert _middle_of_skin(renderer.render(shown_, SIZE, risen))[0] < _middle_of_skin(centred)[0] - 5
+    smile = renderer.render(shown(renderer.model, eyeBlinkLeft=1.0), SIZE).astype(int)
+    changed = np.abs(smile - centred).sum(2)
+    assert changed[:, 80:].sum() > 5 * changed[:, :80].sum()
+
+
+def _middle_of_skin(picture):
+    red = picture[..., 0].astype(int) - picture[..., 2]
+    rows, columns = np.nonzero(red > 25)
+    return rows.mean(), columns.mean()
+
+
+def test_expressions_eyes_jaw_and_head_change_the_picture(renderer):
+    rest = renderer.render(shown(renderer.model), SIZE).astype(int)
+    looking, opened, turned = (shown(renderer.model) for _ in range(3))
+    c, s = np.cos(0.4), np.sin(0.4)
+    turn = np.array([[c, 0, s], [0, 1, 0], [-s, 0, c]], np.float32)
+    looking.eye_rotations[:] = turn
+    turned.head[:3, :3] = turn
+    opened = shown(renderer.model, jawOpen=0.8)
+    jaw_only = shown(renderer.model, jawOpen=0.8)
+    jaw_only.jaw[1, 3] = -0.02
+    for geometry, share in ((looking, 0.0005), (turned, 0.05), (opened, 0.005)):
+        changed = np.abs(renderer.render(geometry, SIZE).astype(int) - rest).max(2) > 12
+        assert changed.mean() > share
+    teeth = np.abs(renderer.render(jaw_only, SIZE).astype(int) - renderer.render(opened, SIZE)).max(2) > 12
+    assert teeth.any()
+
+
+@pytest.mark.parametrize(
+    "shapes",
+    [{}, {"jawOpen": 0.9}, {"eyeWideLeft": 1.0, "eyeWideRight": 1.0}, {"eyeBlinkLeft": 0.5, "mouthSmileLeft": 1.0}],
+)
+@pytest.mark.parametrize("view", ["front", "three-quarter"])
+def test_nothing_shows_through_eyes_and_mouth(renderer, shapes, view):
+    bright = {"background_inner": [0.0, 1.0, 0.0], "background_outer": [0.0, 1.0, 0.0]}
+    green = Renderer(renderer.model, renderer.look.model_copy(update=bright), renderer.context)
+    geometry = shown(renderer.model, **shapes)
+    picture = green.render(geometry, (400, 400), view).astype(int)
+    backdrop = (picture[..., 1] > picture[..., 0] + 40) & (picture[..., 1] > picture[..., 2] + 40)
+    patches, count = label(backdrop)
+    outside = np.unique(np.concatenate([patches[0], patches[-1], patches[:, 0], patches[:, -1]]))
+    camera = named_view(renderer.model, view)
+    lids = [eye[3] for eye in renderer.model.eyelids.rings.values()]
+    for ring in (renderer.model.lips.rings[0], *lids):
+        at = geometry.vertices[[*ring.upper, *ring.lower]]
+        clip = np.c_[at, np.ones(len(at))] @ (camera.projection(1.0) @ camera.view()).T
+        x, y = ((0.5 + 0.5 * clip[:, :2] / clip[:, 3:]) * 400).T
+        box = patches[int(400 - y.max()) : int(400 - y.min()) + 1, int(x.min()) : int(x.max()) + 1]
+        assert box.size
+        assert not set(np.unique(box)) - {0} - set(outside), f"{count} patches"
+
+
+@pytest.mark.parametrize(
+    "size", [(0, 10), (10, 0), (-1, 10), (20000, 10), (10, 20000), (10.5, 10), (True, 10), (10,), 10, None, ("a", "b")]
+)
+def test_wrong_sizes_are_refused(renderer, size):
+    with pytest.raises(InvalidValueError, match="size"):
+        renderer.render(shown(renderer.model), size)
+
+
+def test_wrong_names_and_meshes_are_refused(renderer):
+    with pytest.raises(UnknownNameError, match="three-quarter"):
+        renderer.render(shown(renderer.model), SIZE, "back")
+    with pytest.raises(UnknownNameError, match="portrait"):
+        renderer.render(shown(renderer.model), SIZE, quality="best")
+    geometry = shown(renderer.model)
+    geometry.vertices = geometry.vertices[:-1]
+    with pytest.raises(InvalidValueError, match=r"geometry\.vertices"):
+        renderer.render(geometry, SIZE)
+
+
+def test_odd_and_small_sizes(renderer):
+    for size in ((1, 1), (3, 5), (161, 7), (7, 161)):
+        assert renderer.render(shown(renderer.model), size).shape == (size[1], size[0], 3)
+
+
+def test_many_sizes_do_not_pile_up(renderer):
+    for side in range(20, 40):
+        renderer.render(shown(renderer.model), (side, side))
+    assert len(renderer._targets) <= 4
+
+
+def test_looks_are_checked(tmp_path, renderer):
+    text = (renderer.model.folder / "look.yaml").read_text()
+    path = tmp_path / "look.yaml"
+    path.write_text(text.replace("style: ", "style: long-").replace("grey: 0.", "grey: 7."))
+    with pytest.raises(DataError) as caught:
+        read_look(path)
+    assert {fault.where for fault in caught.value.faults} == {"hair.style", "hair.grey"}
+    assert all(fault.line for fault in caught.value.faults)
+    assert load_look(renderer.model) == renderer.look
