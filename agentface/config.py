@@ -103,7 +103,9 @@ _Loader.yaml_implicit_resolvers = _resolvers()
 _Loader.add_implicit_resolver("tag:yaml.org,2002:bool", re.compile(r"^(?:true|false)$"), list("tf"))
 _Loader.add_implicit_resolver(
     "tag:yaml.org,2002:float",
-    re.compile(r"^[-+]?(?:(?:\.[0-9]+|[0-9]+\.[0-9]*)(?:[eE][-+]?[0-9]+)?|[0-9]+[eE][-+]?[0-9]+)$|^[-+]?\.inf$|^\.nan$"),
+    re.compile(
+        r"^[-+]?(?:(?:\.[0-9]+|[0-9]+\.[0-9]*)(?:[eE][-+]?[0-9]+)?|[0-9]+[eE][-+]?[0-9]+)$|^[-+]?\.inf$|^\.nan$"
+    ),
     list("-+0123456789."),
 )
 
@@ -141,11 +143,21 @@ def _stop(path: Path, line: int | None, expected: str, got: str) -> NoReturn:
     raise DataError([Fault(path, line, "", expected, got)])
 
 
-def _walk(loader: _Loader, node: yaml.Node, where: _Where, path: Path, lines: dict[_Where, int], faults: list[Fault], seen: set[yaml.Node]) -> Any:
+def _walk(
+    loader: _Loader,
+    node: yaml.Node,
+    where: _Where,
+    path: Path,
+    lines: dict[_Where, int],
+    faults: list[Fault],
+    seen: set[yaml.Node],
+) -> Any:
     lines.setdefault(where, node.start_mark.line + 1)
     if isinstance(node, yaml.CollectionNode):
         if node in seen:  # an alias, with which a small file can blow up
-            faults.append(Fault(path, node.start_mark.line + 1, ".".join(map(str, where)), "the value itself", "an alias"))
+            faults.append(
+                Fault(path, node.start_mark.line + 1, ".".join(map(str, where)), "the value itself", "an alias")
+            )
             return None
         seen.add(node)
     if isinstance(node, yaml.SequenceNode):

@@ -76,9 +76,17 @@ def _build() -> tuple[Parameter, ...]:
     rows += [(name, "pseudo", "contraction", 0, 1, text) for name, text in _MIDDLE.items()]
     rows.append(("jaw_open", "jaw", "of the widest opening", 0, 1, "drops the jaw (AU 26, 27)"))
     for axis, limit_deg, text in (("yaw", 50, "to the person's left"), ("pitch", 40, "upward")):
-        rows.append((f"gaze_{axis}", "gaze", "rad", -math.radians(limit_deg), math.radians(limit_deg), f"the eyes turn {text}"))
-    for axis, limit_deg, text in (("yaw", 80, "turns to its left"), ("pitch", 60, "looks up"), ("roll", 50, "tilts to its left")):
-        rows.append((f"head_{axis}", "head", "rad", -math.radians(limit_deg), math.radians(limit_deg), f"the head {text}"))
+        rows.append(
+            (f"gaze_{axis}", "gaze", "rad", -math.radians(limit_deg), math.radians(limit_deg), f"the eyes turn {text}")
+        )
+    for axis, limit_deg, text in (
+        ("yaw", 80, "turns to its left"),
+        ("pitch", 60, "looks up"),
+        ("roll", 50, "tilts to its left"),
+    ):
+        rows.append(
+            (f"head_{axis}", "head", "rad", -math.radians(limit_deg), math.radians(limit_deg), f"the head {text}")
+        )
     return tuple(Parameter(row[0], index, *row[1:]) for index, row in enumerate(rows))
 
 
@@ -116,6 +124,8 @@ class FacePose(Mapping[str, float]):
     """
 
     __slots__ = ("values",)
+    # An array instead of the method that Mapping has under this name: every frame reads it.
+    values: Floats  # type: ignore[assignment]
 
     def __init__(self, values: Floats | None = None) -> None:
         array = np.zeros(COUNT, np.float32) if values is None else np.array(values, np.float32)

@@ -13,6 +13,7 @@ uniform vec3 cloth;
 
 void main() {
     vec3 view = normalize(eye_point.xyz - position), n = normalize(normal);
+    n = dot(n, view) < 0.0 ? -n : n;
     float inside = clamp(matter.x + matter.y + matter.z, 0.0, 1.0);
     vec4 fine = noise(rest_position * 60.0);
     vec3 albedo = matter.x * vec3(0.68, 0.60, 0.48) + matter.y * vec3(0.46, 0.16, 0.15) + matter.z * vec3(0.46, 0.15, 0.14);

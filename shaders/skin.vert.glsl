@@ -15,7 +15,6 @@ centroid out vec4 matter, tint;
 centroid out float open_sky, rest_key;
 
 const float MOUTH_BEHIND = 0.007;  // metres
-const float LIP_BEHIND = 0.0045;
 
 void main() {
     vec4 placed = head * vec4(edge_position(ends), 1.0);
@@ -30,7 +29,6 @@ void main() {
     rest_key = lit_at_rest;
     gl_Position = view_projection * placed;
     // the inside of the mouth follows the lips less than the lips move: it must not hide the teeth
-    float yielding = max(MOUTH_BEHIND * material.y, LIP_BEHIND * material.x * smoothstep(0.20, 0.0, ambient));
-    vec4 behind = view_projection * vec4(position + yielding * normalize(position - eye_point.xyz), 1.0);
+    vec4 behind = view_projection * vec4(position + MOUTH_BEHIND * material.y * normalize(position - eye_point.xyz), 1.0);
     gl_Position.z = behind.z / behind.w * gl_Position.w;
 }

@@ -9,7 +9,7 @@ from agentface.errors import DataError
 class Row(Table):
     name: str
     weight: float
-    parts: list[int] = []
+    parts: tuple[int, ...] = ()
 
 
 def write(tmp_path, text):
@@ -31,7 +31,12 @@ def test_reads_a_good_file(tmp_path):
 
 def test_reports_all_faults_of_a_file_with_their_lines(tmp_path):
     faults = faults_of(tmp_path, "name: 3\nweight: heavy\nparts:\n  - 1\n  - x\ncolour: red\n")
-    assert [(fault.line, fault.where) for fault in faults] == [(1, "name"), (2, "weight"), (5, "parts.1"), (6, "colour")]
+    assert [(fault.line, fault.where) for fault in faults] == [
+        (1, "name"),
+        (2, "weight"),
+        (5, "parts.1"),
+        (6, "colour"),
+    ]
     assert "expected no such key" in str(faults[3])
 
 

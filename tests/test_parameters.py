@@ -40,7 +40,9 @@ def test_refuses_contractions_that_are_none(value):
 def test_a_pose_holds_what_it_was_given_and_nothing_else(contractions):
     pose = FacePose.of(**contractions)
     for parameter in PARAMETERS:
-        base = parameter.name if parameter.name in contractions else parameter.name.removesuffix("_l").removesuffix("_r")
+        base = (
+            parameter.name if parameter.name in contractions else parameter.name.removesuffix("_l").removesuffix("_r")
+        )
         assert pose[parameter.name] == pytest.approx(contractions.get(base, 0.0), abs=1e-6)
 
 

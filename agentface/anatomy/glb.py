@@ -133,7 +133,9 @@ def write_glb(path: Path, meshes: dict[str, MeshArrays], copyright_line: str) ->
         row.min, row.max = shape.offsets.min(0).tolist(), shape.offsets.max(0).tolist()
         row.sparse = gl.Sparse(
             count=len(shape.indices),
-            indices=gl.AccessorSparseIndices(bufferView=put(shape.indices.astype(np.uint16)), componentType=gl.UNSIGNED_SHORT),
+            indices=gl.AccessorSparseIndices(
+                bufferView=put(shape.indices.astype(np.uint16)), componentType=gl.UNSIGNED_SHORT
+            ),
             values=gl.AccessorSparseValues(bufferView=put(shape.offsets.astype(np.float32))),
         )
         document.accessors.append(row)

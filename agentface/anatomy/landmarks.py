@@ -53,7 +53,9 @@ def load_landmarks(path: Path, vertices: Floats, extra: dict[str, Floats]) -> La
     file = document.parse(FeaturePointsFile)
     known = {*LANDMARKS, *(f"{name}_{side}" for name in PAIRED_LANDMARKS for side in SIDES)}
     for name in sorted(file.landmarks.keys() - known):
-        document.fault(("landmarks", name), "a landmark that agentface knows", name, f"known: {', '.join(sorted(known))}")
+        document.fault(
+            ("landmarks", name), "a landmark that agentface knows", name, f"known: {', '.join(sorted(known))}"
+        )
     for name in sorted(known - file.landmarks.keys() - extra.keys()):
         document.fault(("landmarks",), f"the landmark {name}", "none")
     result = Landmarks(extra)

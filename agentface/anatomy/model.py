@@ -176,7 +176,9 @@ def _checked_skin(path: Path, meshes: dict[str, MeshArrays]) -> MeshArrays:
         if not len(positions) or not np.isfinite(positions).all():
             faults.append(Fault(path, None, f"{name}.POSITION", "finite coordinates", "NaN, infinity or none"))
         elif len(mesh.triangles) and not 0 <= mesh.triangles.min() <= mesh.triangles.max() < len(positions):
-            faults.append(Fault(path, None, f"{name}.indices", f"vertices in 0..{len(positions) - 1}", f"{mesh.triangles.max()}"))
+            faults.append(
+                Fault(path, None, f"{name}.indices", f"vertices in 0..{len(positions) - 1}", f"{mesh.triangles.max()}")
+            )
     for attribute in ("_MATERIAL", "_SHADE", "_JAW", "_MIRROR"):
         if "skin" in meshes and attribute not in meshes["skin"].attributes:
             faults.append(Fault(path, None, f"skin.{attribute}", "this vertex attribute", "none"))

@@ -81,7 +81,9 @@ def read_muscles(path: Path) -> MusclesFile:
         for key, anchor in (("origin", row.origin), ("insertion", row.insertion)):
             if anchor.at not in (*LANDMARKS, *PAIRED_LANDMARKS):
                 known = ", ".join((*LANDMARKS, *PAIRED_LANDMARKS))
-                document.fault((*where, key, "at"), "a landmark (paired ones without side)", anchor.at, f"known: {known}")
+                document.fault(
+                    (*where, key, "at"), "a landmark (paired ones without side)", anchor.at, f"known: {known}"
+                )
         for key, names in (("regions", row.regions), ("not_regions", row.not_regions)):
             for i, region in enumerate(names):
                 if region not in _MOVABLE:
@@ -92,7 +94,9 @@ def read_muscles(path: Path) -> MusclesFile:
     return file
 
 
-def place_muscles(file: MusclesFile, landmarks: Landmarks, regions: Regions, vertices: Floats, triangles: Indices) -> MuscleSet:
+def place_muscles(
+    file: MusclesFile, landmarks: Landmarks, regions: Regions, vertices: Floats, triangles: Indices
+) -> MuscleSet:
     """The muscles of a face in metres, in the order of ``VECTOR_MUSCLES``."""
     unit = landmarks.eye_separation
     borders = _Borders(regions, vertices, triangles)

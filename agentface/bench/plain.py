@@ -8,8 +8,8 @@ import numpy as np
 import numpy.typing as npt
 from numba import njit
 
-from agentface.conventions import Bytes, Doubles, Floats
 from agentface.anatomy.muscle_set import MuscleSet
+from agentface.conventions import Bytes, Doubles, Floats
 
 
 def constants(muscles: MuscleSet) -> Doubles:

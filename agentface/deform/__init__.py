@@ -1,0 +1,1 @@
+"""From a pose to a face: vector muscles, lips, lids, jaw, normals."""

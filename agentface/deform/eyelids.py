@@ -34,7 +34,13 @@ class Eyelids:
     def apply(self, values: Floats, vertices: Floats) -> None:
         """Move the lids of ``vertices (V, 3)`` in place, to the parameters ``values``."""
         for lids, close, opened, squeeze in zip(self._eyes, self._close, self._open, self._squeeze, strict=True):
-            lids.apply(vertices, float(values[close]), float(values[opened]), float(values[squeeze]), float(values[self._pitch]))
+            lids.apply(
+                vertices,
+                float(values[close]),
+                float(values[opened]),
+                float(values[squeeze]),
+                float(values[self._pitch]),
+            )
 
 
 class _Lids:

@@ -172,8 +172,35 @@ def meets(fibre: Floats, muscle: int, ball: Floats) -> bool:
 def pull_block(fibre: Floats, muscle: int, part: float, pull: Floats, pair: int, lanes: Floats) -> None:
     """Adds one muscle's pull, away from its origin and to be subtracted, to the changes of a block.
 
-    The radial fall-off needs no branch: of its rising and falling argument the larger is the one that holds.
+    The radial fall-off needs no branch: of its rising and falling argument the larger is the one that holds. The
+    smooth angular fall-off needs none either; that with a cliff has a loop of its own, which is a third slower.
     """
+    ox, oy, oz = fibre[muscle, 0], fibre[muscle, 1], fibre[muscle, 2]
+    rise, fall, start = fibre[muscle, 7], fibre[muscle, 8], fibre[muscle, 9]
+    slope, base = part * fibre[muscle, 10], part * fibre[muscle, 11]
+    ax, ay, az = slope * fibre[muscle, 3], slope * fibre[muscle, 4], slope * fibre[muscle, 5]
+    shift = slope * fibre[muscle, 6]
+    if base != _ZERO:
+        pull_block_cliff(fibre, muscle, part, pull, pair, lanes)
+        return
+    for lane in range(LANES):
+        x, y, z = lanes[lane] - ox, lanes[_Y + lane] - oy, lanes[_Z + lane] - oz
+        square = x * x + y * y + (z * z + _TINY)
+        inverse = _ONE / math.sqrt(square)
+        distance = square * inverse
+        angular = max((x * ax + y * ay + z * az) * inverse + shift, _ZERO)
+        u = min(max(_ONE - distance * rise, distance * fall - start), _ONE)
+        q = u * u
+        radial = (_ONE - q) * (_ONE + q * (_Q1 + q * (_Q2 + q * _Q3)))
+        weight = pull[pair, lane] * inverse * angular * radial
+        lanes[_DX + lane] += weight * x
+        lanes[_DY + lane] += weight * y
+        lanes[_DZ + lane] += weight * z
+
+
+@njit(cache=True, fastmath=True, error_model="numpy")
+def pull_block_cliff(fibre: Floats, muscle: int, part: float, pull: Floats, pair: int, lanes: Floats) -> None:
+    """As :func:`pull_block`, for an angular fall-off that is not zero at the edge of the zone (Waters)."""
     ox, oy, oz = fibre[muscle, 0], fibre[muscle, 1], fibre[muscle, 2]
     ax, ay, az, shift = fibre[muscle, 3], fibre[muscle, 4], fibre[muscle, 5], fibre[muscle, 6]
     rise, fall, start = fibre[muscle, 7], fibre[muscle, 8], fibre[muscle, 9]

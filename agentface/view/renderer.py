@@ -190,9 +190,13 @@ class Renderer:
 
     def _mouth_light(self, geometry: FaceGeometry) -> float:
         """The part of the light that reaches the teeth: all through a mouth open by a finger, little through a slit."""
-        upper, lower = (geometry.vertices[ring, 1] for ring in self._lips)
-        gap = float(np.max(upper) - np.min(lower)) / (0.12 * self.model.landmarks.eye_separation)
-        return min(1.0, 0.25 + 0.75 * max(0.0, gap))
+        wider = self._lip_gap(geometry.vertices) - self._lip_gap(self.model.vertices)
+        opened = wider / (0.12 * self.model.landmarks.eye_separation)
+        return min(1.0, 0.12 + 0.88 * max(0.0, opened))
+
+    def _lip_gap(self, vertices: Floats) -> float:
+        upper, lower = (vertices[ring, 1] for ring in self._lips)
+        return float(upper.mean() - lower.mean())
 
     def _lit_at_rest(self, normals: Floats) -> Floats:
         model, lights = self.model, self.look.lights

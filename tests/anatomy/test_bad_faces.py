@@ -82,7 +82,9 @@ def test_a_mesh_with_nan_is_refused(face):
     assert "finite" in fault.expected
 
 
-@pytest.mark.parametrize("content", [b"", b"glTF", b"\x00" * 5000, b"glTF\x02\x00\x00\x00\xff\xff\xff\xff\xff\xff\xff\x7fJSON{}"])
+@pytest.mark.parametrize(
+    "content", [b"", b"glTF", b"\x00" * 5000, b"glTF\x02\x00\x00\x00\xff\xff\xff\xff\xff\xff\xff\x7fJSON{}"]
+)
 def test_rubbish_instead_of_a_mesh_is_one_fault(face, content):
     (face / "head.glb").write_bytes(content)
     (fault,) = faults_of(face)

@@ -37,7 +37,9 @@ def main(faces: tuple[str, ...], source: Path | None) -> None:
         _write_tables(folder, topology, head, recipe)
         (folder / "PROVENANCE.md").write_text(_provenance(folder.name, recipe, topology), encoding="utf-8")
         size = (folder / "head.glb").stat().st_size
-        click.echo(f"{folder.name}: {len(topology.skin.kept)} skin vertices, {len(topology.skin.triangles)} triangles, {size} bytes")
+        click.echo(
+            f"{folder.name}: {len(topology.skin.kept)} skin vertices, {len(topology.skin.triangles)} triangles, {size} bytes"
+        )
 
 
 def _bake_light(head: Head, topology: HeadTopology) -> None:
@@ -70,7 +72,9 @@ def _write_tables(folder: Path, topology: HeadTopology, head: Head, recipe: Reci
         {"rings": [{"upper": upper, "lower": lower} for upper, lower in lip_rings]},
     )
     lids = {
-        side: [dict(zip(("upper", "lower"), map(topology.ring, halves(ring, positions)), strict=True)) for ring in rings]
+        side: [
+            dict(zip(("upper", "lower"), map(topology.ring, halves(ring, positions)), strict=True)) for ring in rings
+        ]
         for side, rings in topology.loops.lids.items()
     }
     _dump(
@@ -88,7 +92,10 @@ def _write_tables(folder: Path, topology: HeadTopology, head: Head, recipe: Reci
     _dump(
         folder / "jaw.yaml",
         "The jaw's hinge in metres (its axis is parallel to X) and its widest opening.",
-        {"pivot": [round(float(METRES * value), 6) for value in pivot], "widest_deg": round(float(np.degrees(angle)), 2)},
+        {
+            "pivot": [round(float(METRES * value), 6) for value in pivot],
+            "widest_deg": round(float(np.degrees(angle)), 2),
+        },
     )
 
 

@@ -126,7 +126,10 @@ class HeadTopology:
         for name in [name for name in found if name.endswith("_l")]:
             found[f"{name[:-2]}_r"] = int(self.skin.mirror[found[name]])
         return {
-            name: {"vertices": [found[name]], **({"feature_point": point} if (point := _FEATURE_POINTS.get(name)) else {})}
+            name: {
+                "vertices": [found[name]],
+                **({"feature_point": point} if (point := _FEATURE_POINTS.get(name)) else {}),
+            }
             for name in sorted(found)
         }
 
@@ -171,7 +174,9 @@ def build_head(topology: HeadTopology, recipe: Recipe) -> Head:
     base = close_lips(person(mesh, recipe), skin, topology.loops, mesh.positions)
     eye = base[np.unique(mesh.quads["helper-l-eye"])]
     radius = 0.5 * (eye[:, 0].max() - eye[:, 0].min())
-    centre = np.array([0.5 * (eye[:, 0].max() + eye[:, 0].min()), 0.5 * (eye[:, 1].max() + eye[:, 1].min()), eye[:, 2].min() + radius])
+    centre = np.array(
+        [0.5 * (eye[:, 0].max() + eye[:, 0].min()), 0.5 * (eye[:, 1].max() + eye[:, 1].min()), eye[:, 2].min() + radius]
+    )
     ear = skin.place(base)[topology.landmarks["ear_front_l"]["vertices"]][0]  # type: ignore[index]
     origin = np.array([0.0, centre[1], ear[2]])
     shapes = {name: skin.place(mesh.face_unit(name)) for name in mesh.face_units()}

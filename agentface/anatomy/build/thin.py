@@ -1,4 +1,4 @@
-"""Thins out triangles where detail is not needed, by half-edge collapses with quadric errors (Garland, Heckbert 1997)."""
+"""Thins out triangles where detail is not needed: half-edge collapses, quadric errors (Garland, Heckbert 1997)."""
 
 from __future__ import annotations
 

@@ -55,8 +55,8 @@ class Skin:
 
     def _compact(self) -> None:
         self.kept, inverse = np.unique(self.all_triangles, return_inverse=True)
-        self.triangles = inverse.reshape(-1, 3).astype(np.int32)
-        self.mirror = np.searchsorted(self.kept, self.mirror_all[self.kept]).astype(np.int32)
+        self.triangles: Indices = inverse.reshape(-1, 3).astype(np.int32)
+        self.mirror: Indices = np.searchsorted(self.kept, self.mirror_all[self.kept]).astype(np.int32)
 
     def _half(self, quads: Indices, levels: Indices) -> Indices:
         left = [i for i, quad in enumerate(quads) if self.rest[quad, 0].mean() > 0]

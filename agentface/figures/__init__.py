@@ -1,0 +1,1 @@
+"""The figures of the documents, drawn from the faces themselves."""

@@ -1,0 +1,51 @@
+"""The house rules that no tool checks: short files, short functions, links that lead somewhere."""
+
+from __future__ import annotations
+
+import ast
+import re
+from pathlib import Path
+from statistics import median
+
+import pytest
+
+import agentface
+
+ROOT = Path(__file__).parent.parent
+SOURCES = sorted(Path(agentface.__file__).parent.rglob("*.py"))
+PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
+
+
+def length(path: Path) -> int:
+    return path.read_text().count("\n")
+
+
+def test_files_are_short():
+    assert median(map(length, SOURCES)) < 180
+    assert [path.name for path in [*SOURCES, *Path(__file__).parent.rglob("*.py")] if length(path) > 600] == []
+
+
+def test_functions_fit_a_screen():
+    long = [
+        f"{path}:{node.lineno}: {node.name}"
+        for path in SOURCES
+        for node in ast.walk(ast.parse(path.read_text()))
+        if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef)
+        if (node.end_lineno or 0) - node.lineno >= 60
+    ]
+    assert long == []
+
+
+def test_data_folders_hold_no_code():
+    assert [path for folder in ("regions", "rules", "shaders") for path in (ROOT / folder).rglob("*.py")] == []
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+def test_links_lead_somewhere(page):
+    targets = re.findall(r"\]\(([^)#]+)(?:#[^)]*)?\)", page.read_text())
+    assert [target for target in targets if "://" not in target and not (page.parent / target).exists()] == []
+
+
+def test_every_page_is_linked_from_the_readme():
+    text = PAGES[0].read_text()
+    assert [page.name for page in PAGES[1:] if f"(docs/{page.name})" not in text] == []
