@@ -135,7 +135,7 @@ def _read(path: Path) -> tuple[Any, dict[_Where, int], list[Fault]]:
         _stop(path, None, "valid YAML", str(error).splitlines()[0])
     finally:
         if loader is not None:
-            loader.dispose()  # type: ignore[no-untyped-call]
+            loader.dispose()
     return data, lines, faults
 
 
@@ -163,10 +163,10 @@ def _walk(
     if isinstance(node, yaml.SequenceNode):
         return [_walk(loader, item, (*where, i), path, lines, faults, seen) for i, item in enumerate(node.value)]
     if not isinstance(node, yaml.MappingNode):
-        return loader.construct_object(node)  # type: ignore[no-untyped-call]
+        return loader.construct_object(node)
     mapping: dict[Any, Any] = {}
     for key_node, value_node in node.value:
-        key = loader.construct_object(key_node)  # type: ignore[no-untyped-call]
+        key = loader.construct_object(key_node)
         inner = (*where, key)
         line = key_node.start_mark.line + 1
         if not isinstance(key, (str, int)):

@@ -58,7 +58,9 @@ class Installation:
         cwd.mkdir(exist_ok=True)
         environment = {name: value for name, value in os.environ.items() if not name.startswith(("PYTHON", "COV"))}
         command = [str(self.bin / program), *arguments]
-        run = subprocess.run(command, cwd=cwd, env=environment, capture_output=True, text=True, timeout=240, check=False)
+        run = subprocess.run(
+            command, cwd=cwd, env=environment, capture_output=True, text=True, timeout=240, check=False
+        )
         assert run.returncode == 0, run.stderr
         return run.stdout
 

@@ -12,11 +12,12 @@ from agentface.config import Document, Table
 from agentface.conventions import SIDES, Floats
 
 LANDMARKS: tuple[str, ...] = (
-    "hairline_middle", "glabella", "nasion", "nose_tip", "subnasale", "upper_lip_middle", "lower_lip_middle", "chin_fold",
-    "pogonion", "menton",
+    "hairline_middle", "glabella", "nasion", "nose_tip", "subnasale", "upper_lip_middle", "lower_lip_middle",
+    "chin_fold", "pogonion", "menton",
 )  # fmt: skip
 PAIRED_LANDMARKS: tuple[str, ...] = (
-    "brow_inner", "brow_middle", "brow_outer", "inner_canthus", "outer_canthus", "lid_upper", "lid_lower", "infraorbital",
+    "brow_inner", "brow_middle", "brow_outer", "inner_canthus", "outer_canthus", "lid_upper", "lid_lower",
+    "infraorbital",
     "cheekbone", "zygion", "alare", "mouth_corner", "upper_lip_side", "lower_lip_side", "cheek", "jaw_side", "gonion",
     "ear_front", "pupil",
 )  # fmt: skip

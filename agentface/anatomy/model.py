@@ -108,7 +108,7 @@ class HeadModel:
 
     def eye_centre(self, side: str) -> Floats:
         """The centre ``(3,)`` m of the eyeball of side ``l`` or ``r``."""
-        return np.array(self.eyes.centre, np.float32) * ([1, 1, 1] if side == SIDES[0] else [-1, 1, 1])
+        return np.array(self.eyes.centre, np.float32) * np.array([1 if side == SIDES[0] else -1, 1, 1], np.float32)
 
 
 def load_model(face: str | Path = DEFAULT_FACE, muscles: MusclesFile | None = None) -> HeadModel:
@@ -179,9 +179,9 @@ def _checked_skin(path: Path, meshes: dict[str, MeshArrays]) -> MeshArrays:
             faults.append(
                 Fault(path, None, f"{name}.indices", f"vertices in 0..{len(positions) - 1}", f"{mesh.triangles.max()}")
             )
-    for attribute in ("_MATERIAL", "_SHADE", "_JAW", "_MIRROR"):
-        if "skin" in meshes and attribute not in meshes["skin"].attributes:
-            faults.append(Fault(path, None, f"skin.{attribute}", "this vertex attribute", "none"))
+    if "skin" in meshes:
+        missing = {"_MATERIAL", "_SHADE", "_JAW", "_MIRROR"} - meshes["skin"].attributes.keys()
+        faults += [Fault(path, None, f"skin.{name}", "this vertex attribute", "none") for name in sorted(missing)]
     if faults:
         raise DataError(faults)
     return meshes["skin"]

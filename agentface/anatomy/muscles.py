@@ -69,7 +69,7 @@ class MusclesFile(Table):
 
 
 def read_muscles(path: Path) -> MusclesFile:
-    """The checked table; raises DataError naming every unknown muscle, landmark and region, and every missing muscle."""
+    """The checked table; raises DataError naming unknown muscles, landmarks and regions, and missing muscles."""
     document = Document(path)
     file = document.parse(MusclesFile)
     for name in sorted(set(_MUSCLES) - file.muscles.keys()):

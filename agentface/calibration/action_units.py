@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Annotated
 
 from pydantic import Field
@@ -10,6 +11,7 @@ from pydantic import Field
 from agentface.anatomy.model import HeadModel
 from agentface.config import Document, Table
 from agentface.conventions import Floats
+from agentface.errors import DataError, Fault
 from agentface.parameters import MUSCLES
 from agentface.resources import rules_file
 
@@ -45,14 +47,18 @@ class ActionUnit:
     strength: float
 
     def shape(self, model: HeadModel) -> Floats:
-        """``(V, 3)`` m: the sum of the artists' shapes on a face."""
+        """``(V, 3)`` m: the sum of the artists' shapes on a face; raises DataError when it has not all of them."""
+        missing = [name for name in self.shapes if name not in model.shapes]
+        if missing:
+            path = model.folder / "head.glb"
+            raise DataError([Fault(path, None, f"skin.{name}", "a morph target of this name", "none") for name in missing])
         count = len(model.vertices)
         return sum((model.shapes[name].dense(count) for name in self.shapes), 0 * model.vertices)
 
 
-def load_action_units() -> dict[int, ActionUnit]:
-    """The table that comes with agentface; raises DataError with all faults."""
-    document = Document(rules_file("action_units.yaml"))
+def load_action_units(path: Path | None = None) -> dict[int, ActionUnit]:
+    """The table at ``path``, or the one that comes with agentface; raises DataError with all faults."""
+    document = Document(path or rules_file("action_units.yaml"))
     file = document.parse(ActionUnitsFile)
     for number, row in file.action_units.items():
         for muscle in row.muscles:

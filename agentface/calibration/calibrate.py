@@ -38,11 +38,15 @@ def calibrate(face: str | Path, starts: int, seed: int, progress: Progress) -> M
     return MusclesFile(falloff=anatomy.falloff, muscles=muscles)
 
 
+def muscles_yaml(file: MusclesFile) -> str:
+    """The text of ``muscles.yaml``."""
+    content = file.model_dump(exclude_none=True)
+    return _TITLE + yaml.safe_dump(content, sort_keys=False, default_flow_style=None, width=118)
+
+
 def write_muscles(path: Path, file: MusclesFile) -> None:
     """Write ``muscles.yaml``."""
-    content = file.model_dump(exclude_none=True)
-    text = yaml.safe_dump(content, sort_keys=False, default_flow_style=None, width=118)
-    path.write_text(_TITLE + text, encoding="utf-8")
+    path.write_text(muscles_yaml(file), encoding="utf-8")
 
 
 def table(models: list[HeadModel]) -> str:

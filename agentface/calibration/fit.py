@@ -25,7 +25,7 @@ _BEYOND_INSERTION = 0.55  # how far a zone may reach past the skin end: wide zon
 _DIRECTION_WEIGHT = 0.55
 _OUTSIDE_WEIGHT = 0.8
 _STRETCH_WEIGHT = 0.25  # a pinch is ugly however few vertices it has
-_PEAK_WEIGHT = 1.5  # the largest displacements are what a stranger sees
+_PEAK_WEIGHT = 4.0  # the largest displacements are what a stranger sees
 
 Progress = Callable[[str], None]
 

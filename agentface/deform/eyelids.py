@@ -85,8 +85,8 @@ def _edge_turn(edge: list[int], across: Doubles, turn: Doubles) -> Doubles:
 
 
 def _follow(
-    arms: Doubles, across: Doubles, turn: Doubles, upper: Doubles, lower: Doubles, is_upper: np.typing.NDArray[np.bool_],
-    edge: RingHalves,
+    arms: Doubles, across: Doubles, turn: Doubles, upper: Doubles, lower: Doubles,
+    is_upper: np.typing.NDArray[np.bool_], edge: RingHalves,
 ) -> Doubles:  # fmt: skip
     beyond = np.where(is_upper, (turn - upper) / _LID_HEIGHT["upper"], (lower - turn) / _LID_HEIGHT["lower"])
     first, last = across[edge.upper].min(), across[edge.upper].max()

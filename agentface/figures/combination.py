@@ -117,7 +117,7 @@ def _picture(model: HeadModel, muscles: MuscleSet, panel: Panel, moved: Doubles)
 
     centre = 0.5 * (model.landmarks["mouth_corner_l"] + model.landmarks["infraorbital_l"])
     view = MeshView(centre, 1.5 * model.landmarks.eye_separation, 28.0, _PANEL * _FINER)
-    image = Image.new("RGB", (view.size, view.size), (246, 246, 248))
+    image = Image.new("RGB", (view.size, view.size), (255, 255, 255))
     draw = ImageDraw.Draw(image)
     eye = model.parts["eye_l"]
     white = eye.attributes["POSITION"].astype(np.float64)

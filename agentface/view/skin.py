@@ -12,6 +12,7 @@ from agentface.deform.geometry import FaceGeometry
 from agentface.errors import InvalidValueError
 from agentface.view.complexion import blurred, complexion
 from agentface.view.refine import refine, unrefined, vertex_normals
+from agentface.view.shirt import uncovered
 
 _COLUMNS = 256
 _BLUR = 14
@@ -48,7 +49,8 @@ class Skin:
         self, context: Any, program: Any, model: HeadModel, covered: Floats, lit: Floats, *, fine: bool
     ) -> None:
         count = len(model.vertices)
-        mesh = refine(model.triangles, count) if fine else unrefined(model.triangles, count)
+        triangles = uncovered(model)
+        mesh = refine(triangles, count) if fine else unrefined(triangles, count)
         normals = vertex_normals(model.vertices, model.triangles)
         fields: tuple[tuple[str, Floats], ...] = (
             ("rest", model.vertices),
@@ -62,8 +64,8 @@ class Skin:
         layout = [(context.buffer(mesh.ends.tobytes()), "2i", "ends")]
         for name, field in fields:
             layout.append((context.buffer(mesh.mean(field).tobytes()), f"{field.shape[1]}f", name))
-        triangles = context.buffer(mesh.triangles.astype(np.int32).tobytes())
-        self.array = context.vertex_array(program, layout, triangles)
+        corners = context.buffer(mesh.triangles.astype(np.int32).tobytes())
+        self.array = context.vertex_array(program, layout, corners)
 
     def draw(self) -> None:
         """Draw it where ``SkinFields`` has it."""

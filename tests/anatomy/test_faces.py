@@ -2,6 +2,7 @@
 
 import json
 import struct
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -105,12 +106,7 @@ def test_rings_are_ordered_closed_and_symmetric(model):
     for ring in all_rings:
         assert ring.upper[0] == ring.lower[0]
         assert ring.upper[-1] == ring.lower[-1]
-    steps = [
-        step
-        for ring in model.lips.rings[:7]
-        for half in (ring.upper, ring.lower)
-        for step in zip(half, half[1:], strict=False)
-    ]
+    steps = [step for ring in model.lips.rings[:7] for half in (ring.upper, ring.lower) for step in pairwise(half)]
     assert all(tuple(sorted(step)) in edges for step in steps)
     for left, right in zip(model.eyelids.rings["l"], model.eyelids.rings["r"], strict=True):
         assert {int(model.mirror[vertex]) for vertex in left.upper} == set(right.upper)

@@ -38,7 +38,8 @@ def main(faces: tuple[str, ...], source: Path | None) -> None:
         (folder / "PROVENANCE.md").write_text(_provenance(folder.name, recipe, topology), encoding="utf-8")
         size = (folder / "head.glb").stat().st_size
         click.echo(
-            f"{folder.name}: {len(topology.skin.kept)} skin vertices, {len(topology.skin.triangles)} triangles, {size} bytes"
+            f"{folder.name}: {len(topology.skin.kept)} skin vertices, "
+            f"{len(topology.skin.triangles)} triangles, {size} bytes"
         )
 
 
@@ -116,7 +117,7 @@ def _provenance(name: str, recipe: Recipe, topology: HeadTopology) -> str:
 
 | what | source | licence |
 |---|---|---|
-| base mesh hm08, its targets, its symmetry | MakeHuman community, in the Python wheel `{WHEEL}`, folder `mpfb2` | CC0 1.0 |
+| base mesh hm08, targets, symmetry | MakeHuman community, in the Python wheel `{WHEEL}`, folder `mpfb2` | CC0 1.0 |
 | the 52 ARKit-named shapes | Face Units by Mika Suominen, same wheel, folder `faceunits01` | CC0 1.0 |
 | single teeth, gums, eyeballs | made by `agentface.anatomy.build` | MIT |
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
@@ -25,19 +26,22 @@ METRES = 0.1
 
 # Landmarks that are vertices of the base mesh; left ones, whose mirror images are the right ones.
 _EXACT = {
-    "nasion": 132, "nose_tip": 5054, "subnasale": 343, "upper_lip_middle": 455, "lower_lip_middle": 492, "pogonion": 733,
+    "nasion": 132, "nose_tip": 5054, "subnasale": 343, "upper_lip_middle": 455, "lower_lip_middle": 492,
+    "pogonion": 733,
     "brow_inner_l": 6983, "brow_middle_l": 6996, "brow_outer_l": 6999, "inner_canthus_l": 6850, "outer_canthus_l": 6805,
     "mouth_corner_l": 7272, "ear_front_l": 12324,
 }  # fmt: skip
 # The others, as the vertex nearest to a place on the base head, in decimetres.
 _NEAREST = {
-    "glabella": (0, 7.44, 1.50), "hairline_middle": (0, 7.98, 1.30), "chin_fold": (0, 6.45, 1.50), "menton": (0, 6.27, 1.42),
+    "glabella": (0, 7.44, 1.50), "hairline_middle": (0, 7.98, 1.30), "chin_fold": (0, 6.45, 1.50),
+    "menton": (0, 6.27, 1.42),
     "infraorbital_l": (0.29, 7.08, 1.40), "cheekbone_l": (0.46, 7.05, 1.27), "zygion_l": (0.60, 7.12, 1.05),
     "alare_l": (0.135, 6.87, 1.50), "upper_lip_side_l": (0.13, 6.705, 1.56), "lower_lip_side_l": (0.13, 6.53, 1.53),
     "cheek_l": (0.42, 6.75, 1.30), "jaw_side_l": (0.35, 6.36, 1.25), "gonion_l": (0.58, 6.50, 0.85),
 }  # fmt: skip
 _FEATURE_POINTS = {
-    "hairline_middle": "11.1", "menton": "2.1", "pogonion": "2.10", "upper_lip_middle": "8.1", "lower_lip_middle": "8.2",
+    "hairline_middle": "11.1", "menton": "2.1", "pogonion": "2.10", "upper_lip_middle": "8.1",
+    "lower_lip_middle": "8.2",
     "mouth_corner_l": "8.3", "mouth_corner_r": "8.4", "subnasale": "9.15", "nose_tip": "9.3", "nasion": "9.12",
     "lid_upper_l": "3.1", "lid_upper_r": "3.2", "lid_lower_l": "3.3", "lid_lower_r": "3.4", "outer_canthus_l": "3.7",
     "outer_canthus_r": "3.12", "inner_canthus_l": "3.11", "inner_canthus_r": "3.8", "brow_inner_l": "4.1",
@@ -60,6 +64,9 @@ class HeadTopology:
         self.loops: Loops = find_loops(quads[island == _FACE], quads[island == _BAG], sockets)
         self.bag_vertices = np.setdiff1d(quads[island == _BAG], self.loops.lips[0])
         self.skin = Skin(self.quads, self._levels(island[chosen]), mesh.positions, mesh.mirror)
+        self.points: Doubles
+        self.region: Indices
+        self.sub: Indices
         self._partition()
         self._thin()
         self._partition()
@@ -116,7 +123,7 @@ class HeadTopology:
         return [self._index_of(vertex) for vertex in base_ring]
 
     @cached_property
-    def landmarks(self) -> dict[str, dict[str, object]]:
+    def landmarks(self) -> dict[str, dict[str, Any]]:
         """The rows of ``feature_points.yaml``."""
         found = {name: self._index_of(vertex) for name, vertex in _EXACT.items()}
         for name, place in _NEAREST.items():
@@ -177,7 +184,7 @@ def build_head(topology: HeadTopology, recipe: Recipe) -> Head:
     centre = np.array(
         [0.5 * (eye[:, 0].max() + eye[:, 0].min()), 0.5 * (eye[:, 1].max() + eye[:, 1].min()), eye[:, 2].min() + radius]
     )
-    ear = skin.place(base)[topology.landmarks["ear_front_l"]["vertices"]][0]  # type: ignore[index]
+    ear = skin.place(base)[topology.landmarks["ear_front_l"]["vertices"]][0]
     origin = np.array([0.0, centre[1], ear[2]])
     shapes = {name: skin.place(mesh.face_unit(name)) for name in mesh.face_units()}
     jaw = _jaw_weights(skin.place(base) - origin, shapes["jawOpen"], *_hinge(base, mesh, origin))
@@ -204,6 +211,7 @@ def build_head(topology: HeadTopology, recipe: Recipe) -> Head:
     out = mouth_parts.tongue(base + mesh.face_unit("tongueOut"), mesh.quads["helper-tongue"]).positions
     tongue_out = {"tongueOut": _sparse(out - parts["tongue"].positions)}
     for name, part in parts.items():
+        attributes: dict[str, np.typing.NDArray[Any]]
         attributes = {"POSITION": _metres(part.positions - origin), "_MATERIAL": _bytes(part.material)}
         meshes[name] = MeshArrays(part.triangles, attributes, tongue_out if name == "tongue" else {})
     return Head(meshes, METRES * (centre - origin), float(METRES * radius), origin)

@@ -63,7 +63,7 @@ def base_labels(positions: Doubles, loops: Loops) -> dict[str, Doubles]:
     """
     count = len(positions)
     x, y = np.abs(positions[:, 0]), positions[:, 1]
-    above = np.sign(y - (6.585 + 0.35 * np.maximum(x - 0.25, 0.0)))  # the corner of the mouth is the middle face's
+    above = np.sign(y - (6.565 + 0.35 * np.maximum(x - 0.25, 0.0)))  # the corner of the mouth is the middle face's
     lips, lids, lid_above = np.zeros(count), np.zeros(count), np.sign(y - 7.29)
     for depth, ring in [*enumerate(loops.lips), *((-1 - i, ring) for i, ring in enumerate(loops.mouth))]:
         upper, lower = halves(ring, positions)

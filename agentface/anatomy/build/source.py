@@ -118,8 +118,8 @@ def _other_side(name: str) -> str:
 
 
 def _lines(path: Path) -> Iterator[list[str]]:
-    opened = gzip.open(path, "rt", encoding="utf-8") if path.suffix == ".gz" else path.open(encoding="utf-8")
-    with opened as stream:
+    open_text = gzip.open if path.suffix == ".gz" else open
+    with open_text(path, "rt", encoding="utf-8") as stream:
         for line in stream:
             words = line.split()
             if words:

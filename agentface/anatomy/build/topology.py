@@ -27,6 +27,8 @@ class Skin:
         once = mirror_level(self.first, mirror, quads)
         self.mirror_all = mirror_level(self.second, once, self.first.quads)
         self.rest = self.lift(rest)
+        self.triangles: Indices
+        self.mirror: Indices
         self.kept = np.arange(len(self.rest), dtype=np.int32)
         half = self._half(quads, balanced(quads, levels))
         self.all_triangles = np.concatenate([half, self.mirror_all[half[:, ::-1]]])
@@ -55,8 +57,8 @@ class Skin:
 
     def _compact(self) -> None:
         self.kept, inverse = np.unique(self.all_triangles, return_inverse=True)
-        self.triangles: Indices = inverse.reshape(-1, 3).astype(np.int32)
-        self.mirror: Indices = np.searchsorted(self.kept, self.mirror_all[self.kept]).astype(np.int32)
+        self.triangles = inverse.reshape(-1, 3).astype(np.int32)
+        self.mirror = np.searchsorted(self.kept, self.mirror_all[self.kept]).astype(np.int32)
 
     def _half(self, quads: Indices, levels: Indices) -> Indices:
         left = [i for i, quad in enumerate(quads) if self.rest[quad, 0].mean() > 0]
