@@ -17,9 +17,8 @@ LANDMARKS: tuple[str, ...] = (
 )  # fmt: skip
 PAIRED_LANDMARKS: tuple[str, ...] = (
     "brow_inner", "brow_middle", "brow_outer", "inner_canthus", "outer_canthus", "lid_upper", "lid_lower",
-    "infraorbital",
-    "cheekbone", "zygion", "alare", "mouth_corner", "upper_lip_side", "lower_lip_side", "cheek", "jaw_side", "gonion",
-    "ear_front", "pupil",
+    "infraorbital", "cheekbone", "zygion", "alare", "mouth_corner", "upper_lip_side", "lower_lip_side", "cheek",
+    "jaw_side", "gonion", "ear_front", "pupil",
 )  # fmt: skip
 
 

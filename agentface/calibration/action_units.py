@@ -11,8 +11,8 @@ from pydantic import Field
 from agentface.anatomy.model import HeadModel
 from agentface.config import Document, Table
 from agentface.conventions import Floats
-from agentface.errors import DataError, Fault
-from agentface.parameters import MUSCLES
+from agentface.errors import DataError, Fault, did_you_mean
+from agentface.parameters import VECTOR_MUSCLES
 from agentface.resources import rules_file
 
 _Contraction = Annotated[float, Field(gt=0, le=1)]
@@ -60,10 +60,12 @@ def load_action_units(path: Path | None = None) -> dict[int, ActionUnit]:
     """The table at ``path``, or the one that comes with agentface; raises DataError with all faults."""
     document = Document(path or rules_file("action_units.yaml"))
     file = document.parse(ActionUnitsFile)
+    known = list(dict.fromkeys(name[:-2] for name in VECTOR_MUSCLES))
     for number, row in file.action_units.items():
         for muscle in row.muscles:
-            if muscle not in MUSCLES:
-                document.fault(("action_units", number, "muscles", muscle), "a muscle without side", muscle)
+            if muscle not in known:
+                where = ("action_units", number, "muscles", muscle)
+                document.fault(where, "a vector muscle without side", muscle, did_you_mean(muscle, known))
     document.check()
     return {
         number: ActionUnit(number, row.name, dict(row.muscles), tuple(row.shapes), row.strength)

@@ -31,9 +31,7 @@ def shirt(model: HeadModel) -> tuple[Floats, Indices]:
     for t in np.linspace(0.0, 1.0, _ROWS)[1:]:
         spread = start + 0.0034 + (far - start) * t
         fall = 0.055 * t + (_DROP - 0.055) * t**4 + (0.030 * t * np.clip(front, 0, 1))
-        row = _row(spread, (collar + (chin - 0.035 - collar) * t) - fall, turn, axis_z)
-        row[:, 1] = np.maximum(row[:, 1], np.minimum(_over(neck, row) + 0.004, collar - 0.004))
-        rows.append(row)
+        rows.append(_row(spread, (collar + (chin - 0.035 - collar) * t) - fall, turn, axis_z))
     vertices = np.concatenate(rows).astype(np.float32)
     i = np.arange(_AROUND)
     j = (i + 1) % _AROUND
@@ -45,21 +43,13 @@ def shirt(model: HeadModel) -> tuple[Floats, Indices]:
 def uncovered(model: HeadModel) -> Indices:
     """``(T, 3)``: the skin's triangles without those that lie under the shirt, whose ragged end could poke through."""
     chin = float(model.landmarks["menton"][1])
-    forward = np.clip(model.vertices[:, 2] / 0.04 + 1.0, 0, 1)
-    above = model.vertices[:, 1] > chin - 0.048 - 0.014 * forward
+    forward = np.clip(model.vertices[:, 2] / 0.04 + 1.5, 0, 1)
+    above = model.vertices[:, 1] > chin - 0.036 - 0.060 * forward
     return np.asarray(model.triangles[above[model.triangles].all(1)])
 
 
 def _row(radius: Doubles, height: Doubles, turn: Doubles, axis_z: float) -> Doubles:
     return np.stack([radius * np.cos(turn), height, axis_z + radius * np.sin(turn)], axis=1)
-
-
-def _over(neck: Floats, places: Doubles) -> Doubles:
-    """The height of the shoulders' skin near each place; very low where there is none."""
-    away = ((places[:, None, [0, 2]] - neck[None, :, [0, 2]]) ** 2).sum(2) / 0.009**2
-    weights = np.exp(-np.minimum(away, 60.0))
-    total = weights.sum(1)
-    return np.where(total > 0.05, (weights * neck[:, 1]).sum(1) / np.maximum(total, 1e-9), -1.0)
 
 
 def _radius(neck: Floats, axis_z: float, turn: Doubles, height: Doubles) -> Doubles:

@@ -16,6 +16,7 @@ from agentface.conventions import SIDES, Doubles, Indices
 MOUTH_CORNERS = (7272, 527)
 _LIP_RINGS_OUT, _LIP_RINGS_IN = 8, 6
 _VERMILION, _MUCOSA = 7, 2
+_CORNER_FROM = 0.92
 _LID_RINGS, _LID_RINGS_IN_REGION = 10, 7
 _BROW = ((0.130, 7.455), (0.162, 7.457), (0.337, 7.502), (0.483, 7.452), (0.53, 7.41))
 _BROW_HALF_HEIGHT = 0.04
@@ -63,11 +64,13 @@ def base_labels(positions: Doubles, loops: Loops) -> dict[str, Doubles]:
     """
     count = len(positions)
     x, y = np.abs(positions[:, 0]), positions[:, 1]
-    above = np.sign(y - (6.565 + 0.35 * np.maximum(x - 0.25, 0.0)))  # the corner of the mouth is the middle face's
+    above = np.sign(y - (6.585 + 0.35 * np.maximum(x - 0.25, 0.0)))  # the corner of the mouth is the middle face's
     lips, lids, lid_above = np.zeros(count), np.zeros(count), np.sign(y - 7.29)
     for depth, ring in [*enumerate(loops.lips), *((-1 - i, ring) for i, ring in enumerate(loops.mouth))]:
         upper, lower = halves(ring, positions)
-        above[lower], above[upper] = -1.0, 1.0  # the corners, in both halves, count as the upper lip's
+        # at the corners, where both lips end, height decides as on the skin beside them
+        between = [vertex for vertex in lower if x[vertex] < _CORNER_FROM * x[lower].max()]
+        above[between], above[upper] = -1.0, 1.0
         lips[ring] = -_MUCOSA - 1 <= depth <= _VERMILION
     for all_rings in loops.lids.values():
         for depth, ring in enumerate(all_rings):

@@ -1,0 +1,168 @@
+"""``agentface calibrate``: fits a face's muscles to its artists' shapes, and measures how well they agree."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import asdict
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from agentface.commands.options import json_option, write_json
+from agentface.errors import OutputError
+
+if TYPE_CHECKING:
+    from agentface.calibration.agreement import Agreement
+    from agentface.calibration.fit import Progress
+
+    Rows = dict[int, Agreement]
+
+
+@click.command()
+@click.argument("named", required=False, metavar="[FACE]")
+@click.option("--starts", type=click.IntRange(1, 1000), default=6, show_default=True, help="Searches of each group.")
+@click.option("--seed", type=click.IntRange(0), default=0, show_default=True, help="Of the searches' starts.")
+@click.option("--dry-run", is_flag=True, help="Fit and print, write nothing.")
+@click.option("--table", is_flag=True, help="Fit nothing: measure FACE, or all faces that come with agentface.")
+@click.option("-o", "--output", metavar="FILE.md|-", help="With --table: the document whose table to renew.")
+@json_option
+@click.option("--face", metavar="NAME|PATH", help="The same as FACE.")
+@click.option("--deformer", type=click.Choice(["geometric", "tissue"]), default="geometric", show_default=True)
+def calibrate(
+    *,
+    named: str | None,
+    starts: int,
+    seed: int,
+    dry_run: bool,
+    table: bool,
+    output: str | None,
+    json_file: str | None,
+    face: str | None,
+    deformer: str,
+) -> None:
+    """Fit the vector muscles of FACE, a name or a folder, to its artists' shapes, and write its muscles.yaml.
+
+    Takes minutes. Prints how well every action unit agrees, before and after.
+    """
+    from agentface.face import check_deformer
+
+    check_deformer(deformer)
+    if named and face:
+        raise click.UsageError("expected one face, got FACE and --face")
+    chosen = named or face
+    if table:
+        if dry_run:
+            raise click.UsageError("--table fits nothing, so there is nothing to try with --dry-run")
+        _measure([chosen] if chosen else None, output, json_file)
+    elif output:
+        raise click.UsageError("--output goes with --table; a fit is written to the face's own folder")
+    elif not chosen:
+        raise click.UsageError("expected the FACE to fit, or --table; for example agentface calibrate amber --dry-run")
+    else:
+        _fit(chosen, starts, seed, dry_run, json_file)
+
+
+def _measure(faces: Sequence[str] | None, output: str | None, json_file: str | None) -> None:
+    from agentface.anatomy.model import load_model
+    from agentface.calibration.action_units import load_action_units
+    from agentface.calibration.agreement import measure
+    from agentface.calibration.calibrate import table
+    from agentface.resources import face_names
+
+    models = [load_model(face) for face in faces or face_names()]
+    if json_file is not None:
+        units = load_action_units()
+        write_json(json_file, {model.name: _figures(measure(model, units)) for model in models})
+    if output not in (None, "-"):
+        _renew(Path(str(output)), table(models))
+    elif output == "-" or json_file is None:
+        click.echo(table(models), nl=False)
+
+
+def _renew(path: Path, table: str) -> None:
+    from agentface.calibration.limits import with_table
+    from agentface.io.files import write_file
+
+    try:
+        text = with_table(path.read_text(encoding="utf-8"), table)
+    except (OSError, UnicodeDecodeError) as error:
+        raise OutputError(f"{path}: expected a document to put the table into: {error}") from error
+    except OutputError as error:
+        raise OutputError(f"{path}: {error}") from error
+    write_file(path, text.encode())
+    click.echo(f"{path}: table renewed")
+
+
+def _fit(face: str, starts: int, seed: int, dry_run: bool, json_file: str | None) -> None:
+    from agentface.anatomy.model import load_model
+    from agentface.anatomy.muscles import read_muscles
+    from agentface.calibration import calibrate as fitting
+    from agentface.calibration.action_units import load_action_units
+    from agentface.calibration.agreement import measure
+    from agentface.calibration.limits import missed
+    from agentface.io.files import check_writable, write_file
+    from agentface.resources import face_folder
+
+    path = face_folder(face) / "muscles.yaml"
+    units = load_action_units()
+    model = load_model(face, muscles=None if path.exists() else read_muscles(fitting.anatomy_file()))
+    if not dry_run:
+        check_writable(path)
+    before = measure(model, units)
+    with _progress(starts) as progress:
+        fitted = fitting.calibrate(face, starts, seed, progress)
+    after = measure(load_model(face, muscles=fitted), units)
+    if json_file is not None:
+        write_json(json_file, {"before": _figures(before), "after": _figures(after)})
+    if json_file != "-":
+        _print({number: unit.name for number, unit in units.items()}, before, after)
+    for sentence in missed(after):
+        click.echo(f"agentface: {sentence}", err=True)
+    if not dry_run:
+        write_file(path, fitting.muscles_yaml(fitted).encode())
+        click.echo(f"{path}: written", err=True)
+
+
+@contextmanager
+def _progress(starts: int) -> Iterator[Progress]:
+    """Shows each search as it ends, and the time left."""
+    from rich.console import Console
+    from rich.progress import BarColumn, TextColumn, TimeElapsedColumn, TimeRemainingColumn
+    from rich.progress import Progress as Bar
+
+    from agentface.calibration.action_units import load_action_units
+    from agentface.calibration.fit import groups
+
+    # A search's time grows with its parameters, and with the muscles and action units of each evaluation.
+    work = [len(g.muscles) ** 2 * len(g.units) for g in groups(list(load_action_units().values()))]
+    steps = iter([each for each in work for _ in range(starts)])
+    columns = (TextColumn("{task.description}"), BarColumn(), TimeElapsedColumn(), TextColumn("left"))
+    # No update comes for a minute at times: guess from all of them.
+    with Bar(*columns, TimeRemainingColumn(), console=Console(stderr=True), speed_estimate_period=3600) as bar:
+        task = bar.add_task("fitting", total=starts * sum(work))
+        yield lambda message: bar.update(task, description=message, advance=next(steps, 0))
+
+
+def _print(names: dict[int, str], before: Rows, after: Rows) -> None:
+    from rich.console import Console
+    from rich.table import Table
+
+    from agentface.calibration.calibrate import mean_cosine
+
+    table = Table("AU", "name", "mean cosine", "peak ratio", "region", "artists' region")
+    for number, name in names.items():
+        old, new = before[number], after[number]
+        cosine, ratio = f"{old.cosine:.2f} → {new.cosine:.2f}", f"{old.peak_ratio:.2f} → {new.peak_ratio:.2f}"
+        table.add_row(str(number), name, cosine, ratio, new.region, new.artists_region)
+    table.add_row("all", "mean", f"{mean_cosine(before):.2f} → {mean_cosine(after):.2f}", "", "", "")
+    Console().print(table)
+
+
+def _figures(rows: Rows) -> dict[str, Any]:
+    from agentface.calibration.calibrate import mean_cosine
+    from agentface.calibration.limits import missed
+
+    units = {str(number): asdict(row) for number, row in rows.items()}
+    return {"mean_cosine": mean_cosine(rows), "missed": missed(rows), "action_units": units}
