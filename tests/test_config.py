@@ -11,7 +11,7 @@ from agentface.errors import DataError
 class Row(Table):
     name: str
     weight: float
-    parts: tuple[int, ...] = ()
+    parts: list[int] = []
 
 
 def write(tmp_path, text):

@@ -6,6 +6,7 @@ import ast
 import re
 from pathlib import Path
 from statistics import median
+from typing import Any
 
 import pytest
 
@@ -57,3 +58,12 @@ def test_readme_leads_to_every_page():
         found |= new
         new = {target for page in new for target in linked(page) if target.suffix == ".md"} - found
     assert {page.resolve() for page in PAGES} <= found
+
+
+@pytest.mark.gl
+def test_the_readme_s_first_program_runs():
+    program = re.findall(r"```python\n(.*?)```", PAGES[0].read_text(), re.DOTALL)[0]
+    known: dict[str, Any] = {}
+    exec(program, known)  # noqa: S102  # the project's own words
+    assert known["image"].shape == (720, 1280, 3)
+    assert known["face"].emotion["happiness"] == pytest.approx(0.8)

@@ -51,7 +51,9 @@ class ActionUnit:
         missing = [name for name in self.shapes if name not in model.shapes]
         if missing:
             path = model.folder / "head.glb"
-            raise DataError([Fault(path, None, f"skin.{name}", "a morph target of this name", "none") for name in missing])
+            raise DataError(
+                [Fault(path, None, f"skin.{name}", "a morph target of this name", "none") for name in missing]
+            )
         count = len(model.vertices)
         return sum((model.shapes[name].dense(count) for name in self.shapes), 0 * model.vertices)
 

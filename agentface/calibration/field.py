@@ -15,14 +15,14 @@ ROWS = 10
 """Numbers a muscle: origin 3, insertion 3, cosine of the zone, fall start, fall finish, elasticity."""
 
 
-@njit(cache=True, fastmath=True)  # type: ignore[untyped-decorator]
+@njit(cache=True, fastmath=True)
 def displacements(rest: Doubles, rows: Doubles, reach: Doubles, contraction: Doubles) -> Any:
     """``(V, 3)``: muscles ``rows (M, ROWS)`` with ``reach (M, V)``, combined in parallel steps of 0.2.
 
     The same formula as the deformer's kernel with the smooth fall-off; a test holds the two together.
     """
     moved = np.zeros(rest.shape)
-    steps = int(math.ceil(contraction.max() / STEP - 1e-9))
+    steps = math.ceil(contraction.max() / STEP - 1e-9)
     for v in range(rest.shape[0]):
         x, y, z = rest[v, 0], rest[v, 1], rest[v, 2]
         for step in range(steps):

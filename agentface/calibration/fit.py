@@ -59,7 +59,7 @@ class Fitter:
         placed = place_muscles(anatomy, model.landmarks, model.regions, model.vertices, model.triangles)
         names = [f"{name}_{side}" for name in group.muscles for side in SIDES]
         self._reach_all = np.stack([placed.reach[placed.index(name)] for name in names]).astype(np.float64)
-        half = np.flatnonzero((model.vertices[:, 0] > -1e-6) & (self._touched() > 0))
+        half = np.flatnonzero((model.vertices[:, 0] > -1e-6) & (self._touched() > 0)).astype(np.int32)
         self._rest = model.vertices[half].astype(np.float64)
         self._reach = np.ascontiguousarray(self._reach_all[:, half])
         self._edges, self._lengths = self._half_edges(half)
@@ -103,7 +103,7 @@ class Fitter:
                 rows[2 * i + j, :3] = anchor_point(row.origin, side, self.model.landmarks) + flip * value[:3]
                 rows[2 * i + j, 3:6] = anchor_point(row.insertion, side, self.model.landmarks) + flip * value[3:6]
                 rows[2 * i + j, 6] = np.cos(np.radians(value[6]))
-                length = np.linalg.norm(rows[2 * i + j, 3:6] - rows[2 * i + j, :3]) / self.unit
+                length = float(np.linalg.norm(rows[2 * i + j, 3:6] - rows[2 * i + j, :3])) / self.unit
                 rows[2 * i + j, 7:] = self.unit * np.array([*_fall_off(value, length), value[9]])
         return rows
 
@@ -119,7 +119,9 @@ class Fitter:
             scale = weight[:, None] / (peak * np.sqrt(inside.sum()))
             parts.append(((moved - target) * scale).ravel())
             unit_moved = moved[inside] / (np.linalg.norm(moved[inside], axis=1, keepdims=True) + 0.04 * peak)
-            parts.append((_DIRECTION_WEIGHT / np.sqrt(inside.sum()) * (unit_moved - target[inside] / size[inside])).ravel())
+            parts.append(
+                (_DIRECTION_WEIGHT / np.sqrt(inside.sum()) * (unit_moved - target[inside] / size[inside])).ravel()
+            )
             stretch = (moved - target)[self._edges[:, 0]] - (moved - target)[self._edges[:, 1]]
             parts.append((_STRETCH_WEIGHT / np.sqrt(inside.sum()) * stretch / self._lengths).ravel())
         pull = (values - self.start()).reshape(-1, ROWS)[:, :6] * 0.02
@@ -137,10 +139,14 @@ class Fitter:
                 spread = (high - low) * np.tile([0.30] * 6 + [0.25] * 4, len(self.group.muscles))
                 first = first + rng.normal(0, 0.5, len(first)) * spread
             inside = np.clip(first, low + 1e-6, high - 1e-6)
-            found = least_squares(self.residuals, inside, bounds=(low, high), max_nfev=60, x_scale=high - low, diff_step=1e-4)
+            found = least_squares(
+                self.residuals, inside, bounds=(low, high), max_nfev=60, x_scale=high - low, diff_step=1e-4
+            )
             if found.cost < cost:
                 best, cost = found.x, float(found.cost)
-            progress(f"AU {'+'.join(str(unit.number) for unit in self.group.units)}: start {attempt + 1}, cost {cost:.4f}")
+            progress(
+                f"AU {'+'.join(str(unit.number) for unit in self.group.units)}: start {attempt + 1}, cost {cost:.4f}"
+            )
         return best, cost
 
     def fitted(self, values: Doubles) -> dict[str, MuscleRow]:

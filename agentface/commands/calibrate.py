@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 @click.command()
 @click.argument("named", required=False, metavar="[FACE]")
-@click.option("--starts", type=click.IntRange(1, 1000), default=6, show_default=True, help="Searches of each group.")
+@click.option("--starts", type=click.IntRange(1, 1000), default=4, show_default=True, help="Searches of each group.")
 @click.option("--seed", type=click.IntRange(0), default=0, show_default=True, help="Of the searches' starts.")
 @click.option("--dry-run", is_flag=True, help="Fit and print, write nothing.")
 @click.option("--table", is_flag=True, help="Fit nothing: measure FACE, or all faces that come with agentface.")
@@ -151,12 +151,13 @@ def _print(names: dict[int, str], before: Rows, after: Rows) -> None:
 
     from agentface.calibration.calibrate import mean_cosine
 
-    table = Table("AU", "name", "mean cosine", "peak ratio", "region", "artists' region")
+    table = Table("AU", "name", "mean cosine", "peak ratio", "region")
     for number, name in names.items():
         old, new = before[number], after[number]
         cosine, ratio = f"{old.cosine:.2f} → {new.cosine:.2f}", f"{old.peak_ratio:.2f} → {new.peak_ratio:.2f}"
-        table.add_row(str(number), name, cosine, ratio, new.region, new.artists_region)
-    table.add_row("all", "mean", f"{mean_cosine(before):.2f} → {mean_cosine(after):.2f}", "", "", "")
+        region = new.region if new.region == new.artists_region else f"{new.region}, not {new.artists_region}"
+        table.add_row(str(number), name, cosine, ratio, region)
+    table.add_row("all", "mean", f"{mean_cosine(before):.2f} → {mean_cosine(after):.2f}", "", "")
     Console().print(table)
 
 

@@ -10,7 +10,7 @@ from agentface.parameters import indices_of
 
 _EDGE_RING = 3
 _MEETING = 0.22  # where the closed lids meet, from the lower edge up, as a part of the opening
-_WIDEST = 0.42  # how far the upper lid rises past neutral, as a part of the opening
+_WIDEST = 0.27  # rad, how far the upper lid rises past neutral in the middle of the eye
 _SQUEEZE_UPPER, _SQUEEZE_LOWER = 0.22, 1.15
 _FOLLOW_UPPER, _FOLLOW_LOWER = 0.55, 0.25
 _LID_HEIGHT = {"upper": 0.62, "lower": 0.60}  # rad above or below the edge over which the skin follows it
@@ -64,14 +64,17 @@ class _Lids:
         to_meeting = np.where(is_upper, meeting - upper, meeting - lower)[pick]
         self._closing = (follow[pick] * to_meeting).astype(np.float32)
         self._follow = follow[pick].astype(np.float32)
+        profile = is_upper * opening / opening.max()
+        self._widening = (follow * profile)[pick].astype(np.float32)
 
     def apply(self, vertices: Floats, close: float, opened: float, squeeze: float, pitch: float) -> None:
         if not (close or opened or squeeze or pitch):
             return
-        shut_upper = np.clip(close + _SQUEEZE_UPPER * squeeze - _WIDEST * opened * (1 - close), -_WIDEST, 1)
+        shut_upper = np.clip(close + _SQUEEZE_UPPER * squeeze, 0, 1)
         shut_lower = np.clip(close + _SQUEEZE_LOWER * squeeze, 0, 1)
         gaze = pitch * (1 - close) * np.where(self._is_upper, _FOLLOW_UPPER, _FOLLOW_LOWER)
         angle = self._closing * np.where(self._is_upper, shut_upper, shut_lower) + self._follow * gaze
+        angle += _WIDEST * opened * (1 - close) * self._widening
         cosine, sine = np.cos(angle), np.sin(angle)
         arm = vertices[self._where] - self._centre
         vertices[self._where, 1] = self._centre[1] + cosine * arm[:, 1] + sine * arm[:, 2]

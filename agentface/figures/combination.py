@@ -153,7 +153,7 @@ def _png(image: Image) -> bytes:
 
 
 def _palette() -> Bytes:
-    """``(N, 3)``: shades of skin, folded skin and the muscles' colours, and greys; a picked palette loses the rare ones."""
+    """``(N, 3)``: shades of skin, folded skin, the muscles' colours, greys; a picked palette loses the rare ones."""
     white, black = np.full(3, 255.0), np.zeros(3)
     ramps = [(black, SKIN, 80), (0.3 * FOLDED, FOLDED, 16), (FOLDED, SKIN, 16), (np.array(_INK), white, 32)]
     ramps += [(np.array(colour), end, 16) for colour in MUSCLES.values() for end in (white, 0.8 * SKIN)]
