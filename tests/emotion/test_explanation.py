@@ -34,7 +34,7 @@ def test_an_explanation_says_its_rules_in_words(inference: Inference):
     (mode,) = explanation.modes
     assert (mode.name, mode.weight) == ("sadness+fear", 1.0)
     texts = [rule.text for rule in mode.rules]
-    assert "if Sadness is High and Fear is High then contraction of frontalis_medialis is Big" in texts
+    assert "if Sadness is High and Fear is High then contraction of frontalis_medialis is VeryBig" in texts
 
 
 def test_an_explanation_goes_to_json_and_to_text(inference: Inference):

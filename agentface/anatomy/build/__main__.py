@@ -8,8 +8,7 @@ import click
 import numpy as np
 import yaml
 
-from agentface.anatomy.build.head import METRES, Head, HeadTopology, build_head
-from agentface.anatomy.build.head import _hinge as hinge_of
+from agentface.anatomy.build.head import METRES, Head, HeadTopology, build_head, hinge
 from agentface.anatomy.build.identity import Recipe, person
 from agentface.anatomy.build.occlusion import ambient_light
 from agentface.anatomy.build.partition import halves
@@ -89,7 +88,7 @@ def _write_tables(folder: Path, topology: HeadTopology, head: Head, recipe: Reci
         "The left eyeball in metres (the right one is its mirror image) and how far the eyes turn.",
         {"centre": centre, "radius": round(head.eye_radius, 6), "yaw_limit_deg": 27.5, "pitch_limit_deg": 16.0},
     )
-    pivot, angle = hinge_of(person(topology.mesh, recipe), topology.mesh, head.origin)
+    pivot, angle = hinge(person(topology.mesh, recipe), topology.mesh, head.origin)
     _dump(
         folder / "jaw.yaml",
         "The jaw's hinge in metres (its axis is parallel to X) and its widest opening.",

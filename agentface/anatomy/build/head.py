@@ -187,7 +187,7 @@ def build_head(topology: HeadTopology, recipe: Recipe) -> Head:
     ear = skin.place(base)[topology.landmarks["ear_front_l"]["vertices"]][0]
     origin = np.array([0.0, centre[1], ear[2]])
     shapes = {name: skin.place(mesh.face_unit(name)) for name in mesh.face_units()}
-    jaw = _jaw_weights(skin.place(base) - origin, shapes["jawOpen"], *_hinge(base, mesh, origin))
+    jaw = _jaw_weights(skin.place(base) - origin, shapes["jawOpen"], *hinge(base, mesh, origin))
     meshes = {
         "skin": MeshArrays(
             skin.triangles,
@@ -217,7 +217,7 @@ def build_head(topology: HeadTopology, recipe: Recipe) -> Head:
     return Head(meshes, METRES * (centre - origin), float(METRES * radius), origin)
 
 
-def _hinge(base: Doubles, mesh: BaseMesh, origin: Doubles) -> tuple[Doubles, float]:
+def hinge(base: Doubles, mesh: BaseMesh, origin: Doubles) -> tuple[Doubles, float]:
     """The jaw's axis (a point of it) and the angle in radians of the shape jawOpen, fitted to the lower teeth."""
     teeth = np.unique(mesh.quads["helper-lower-teeth"])
     before = (base[teeth] - origin)[:, 1:]
