@@ -71,9 +71,10 @@ def _faults_of(read: Callable[[], object]) -> list[Fault]:
 
 
 def _rule_readers() -> dict[str, _Reader]:
+    from agentface.calibration.action_units import load_action_units
     from agentface.emotion.tables import load_blends, load_emotions
 
-    return {"emotions.yaml": load_emotions, "blends.yaml": load_blends}
+    return {"emotions.yaml": load_emotions, "blends.yaml": load_blends, "action_units.yaml": load_action_units}
 
 
 def _face_readers() -> dict[str, _Reader]:

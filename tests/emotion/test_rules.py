@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+import re
 from itertools import combinations, pairwise
 from pathlib import Path
 
@@ -11,6 +12,9 @@ from agentface.emotion.state import EMOTIONS
 from agentface.emotion.tables import load_blends, load_emotions
 from agentface.errors import DataError, Fault
 from agentface.parameters import MUSCLES
+
+# Pressed lips and a raised chin belong to held-back anger; fury opens the mouth.
+GIVES_WAY = {("anger", "orbicularis_oris_press"), ("anger", "mentalis")}
 
 
 def spoil(file: Path, *changes: tuple[str, str]) -> None:
@@ -64,13 +68,14 @@ def test_every_rule_table_is_gentle(rulebase: RuleBase):
 )
 def test_the_prototypes_of_emfacs_are_in_the_rules(rulebase: RuleBase, emotion: str, muscles: tuple[str, ...]):
     rules = rulebase.mode((emotion,)).consequents
-    assert all(rules[muscle][-1] >= 2 for muscle in muscles)
+    assert all(rules[muscle].max() >= 2 for muscle in muscles)
 
 
 def test_each_emotion_grows_with_its_intensity(rulebase: RuleBase):
     for mode in rulebase.modes[:6]:
-        for rules in mode.consequents.values():
-            assert all(high >= low for low, high in pairwise(rules.tolist()))
+        for muscle, rules in mode.consequents.items():
+            if (*mode.emotions, muscle) not in GIVES_WAY:
+                assert all(high >= low for low, high in pairwise(rules.tolist())), (mode.emotions, muscle)
 
 
 def test_the_parts_of_a_blend_follow_their_emotions(rulebase: RuleBase):
@@ -134,13 +139,11 @@ def test_all_faults_of_both_files_come_at_once_with_their_lines(rules_folder: Pa
 )
 def test_a_row_that_would_make_the_face_jump_is_refused(rules_folder: Path, row: str, expected: str):
     file = rules_folder / "emotions.yaml"
-    spoil(
-        file,
-        (
-            "zygomaticus_major:                     [VerySmall, Small,     Medium,    Big,       VeryBig]",
-            f"zygomaticus_major: {row}",
-        ),
+    text, changed = re.subn(
+        r"zygomaticus_major: +\[.*\]", f"zygomaticus_major: {row}", file.read_text("utf-8"), count=1
     )
+    assert changed
+    file.write_text(text, encoding="utf-8")
     (fault,) = faults_of(rules_folder)
     assert expected in str(fault)
     assert fault.line == line_of(file, "zygomaticus_major")
