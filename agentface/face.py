@@ -178,13 +178,21 @@ class Face:
             self._geometry = self._deformer.deform(self.pose)
         return self._geometry
 
-    def render(self, size: tuple[int, int] = (1280, 720), camera: str = "front", quality: str = "fast") -> Bytes:
+    def render(
+        self,
+        size: tuple[int, int] = (1280, 720),
+        camera: str = "front",
+        quality: str = "fast",
+        *,
+        pose: FacePose | None = None,
+    ) -> Bytes:
         """A picture of the face as shown now: ``(height, width, 3)`` uint8, sRGB.
 
         Args:
             size: width and height in pixels.
             camera: ``front``, ``three-quarter`` or ``profile``.
             quality: ``fast`` or ``portrait``.
+            pose: draw this pose instead, for example one kept from earlier.
 
         Raises GraphicsError where the machine has no OpenGL.
         """
@@ -192,7 +200,11 @@ class Face:
             from agentface.view.renderer import Renderer
 
             self._renderer = Renderer(self.model)
-        return self._renderer.render(self.geometry, size=size, camera=camera, quality=quality)
+        geometry = self.geometry
+        if pose is not None:
+            self._geometry = None  # the deformer overwrites the arrays
+            geometry = self._deformer.deform(pose)
+        return self._renderer.render(geometry, size=size, camera=camera, quality=quality)
 
     def explain(self) -> Explanation:
         """Which rules make the contractions of the target emotions; has ``as_dict()`` and ``render()``."""

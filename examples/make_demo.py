@@ -36,7 +36,7 @@ def film_agent(path: Path, pace: float) -> None:
     """A running server films its face while the agent of another process tells it what to feel."""
     port = free_port()
     command = [sys.executable, "-m", "agentface", "serve", "--osc", f"127.0.0.1:{port}", "--record", str(path)]
-    with subprocess.Popen([*command, "--size", "720x720"]) as server:  # noqa: S603  # our own program
+    with subprocess.Popen([*command, "--every-frame", "--size", "540x540"]) as server:  # noqa: S603  # our own program
         try:
             agent = [sys.executable, str(HERE / "osc_agent.py"), "--osc", f"127.0.0.1:{port}", "--wait", "120"]
             subprocess.run([*agent, "--pace", str(pace)], check=True)  # noqa: S603  # our own program

@@ -238,7 +238,26 @@ def test_serve_records_a_film(tmp_path):
     assert times == sorted(set(times))
 
 
+@pytest.mark.gl
+def test_serve_films_every_frame_when_drawing_waits(tmp_path):
+    import av
+
+    path = tmp_path / "film.mp4"
+    result = call(
+        *("serve", "--osc", "127.0.0.1:0", "--record", path, "--every-frame"),
+        *("--duration", "1", "--fps", "20", "--size", "96x64"),
+    )
+    assert result.exit_code == 0, result.output
+    with av.open(str(path)) as film:
+        times = [float(frame.time) for frame in film.decode(video=0)]
+    assert 10 <= len(times) <= 20, "a busy machine may be late for a frame, but not for drawing"
+    assert times == sorted(set(times))
+
+
 def test_serve_refuses_a_film_that_cannot_be_written(tmp_path):
+    later = ("serve", "--osc", "127.0.0.1:0", "--every-frame")
+    assert "no folder" in fail(*later, "--record", tmp_path / "no" / "a.mp4")
+    assert "--record" in fail(*later, code=2)
     assert "no folder" in fail("serve", "--osc", "127.0.0.1:0", "--record", tmp_path / "no" / "a.mp4")
     assert ".mp4" in fail("serve", "--osc", "127.0.0.1:0", "--record", tmp_path / "a.avi")
     assert "even" in fail("serve", "--osc", "127.0.0.1:0", "--record", tmp_path / "a.mp4", "--size", "95x64")

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import signal
 from collections.abc import Callable, Iterator
-from contextlib import ExitStack, contextmanager, suppress
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from threading import Event
 from typing import TYPE_CHECKING
@@ -23,6 +23,7 @@ from agentface.commands.options import (
 
 if TYPE_CHECKING:
     from agentface.face import Face
+    from agentface.parameters import FacePose
 
 
 @click.command()
@@ -31,6 +32,11 @@ if TYPE_CHECKING:
 )
 @click.option("--view", type=click.Choice(["window", "none"]), default="none", show_default=True)
 @click.option("--record", type=click.Path(path_type=Path), metavar="FILE.mp4", help="Film the face.")
+@click.option(
+    "--every-frame",
+    is_flag=True,
+    help="Film without gaps: note the face in real time, draw the frames when the server stops.",
+)
 @click.option("--duration", type=click.FloatRange(min=0, min_open=True), metavar="S", help="Stop after S seconds.")
 @click.option("--fps", type=click.FloatRange(1, 240), default=None, help="Frames a second: 60, or 30 when recording.")
 @size_option
@@ -42,6 +48,7 @@ def serve(
     osc: tuple[str, int],
     view: str,
     record: Path | None,
+    every_frame: bool,
     duration: float | None,
     fps: float | None,
     size: tuple[int, int],
@@ -56,6 +63,8 @@ def serve(
     """
     if view == "window" and (record or duration or fps):
         raise click.UsageError("--record, --duration and --fps go with --view none")
+    if every_frame and not record:
+        raise click.UsageError("--every-frame goes with --record")
     from agentface.io.osc.server import OscServer
 
     shown = make_face(face, deformer)
@@ -65,7 +74,8 @@ def serve(
             _open_window(shown, place)
             return
         rate = fps or (30.0 if record else 60.0)
-        with _film(shown, record, size, camera, quality, rate, duration) as on_frame, _until_told() as stop:
+        film = _film_later if every_frame else _film
+        with film(shown, record, size, camera, quality, rate, duration) as on_frame, _until_told() as stop:
             from agentface.io.live import run_live
             from agentface.motion.clock import SystemClock
 
@@ -96,18 +106,42 @@ def _film(
     if path is None:
         yield lambda _: None
         return
+    with _writer(face, path, size, camera, quality, fps, duration) as draw:
+        face.render(size, camera, quality)
+        yield lambda time: draw(time, face.pose)
+
+
+@contextmanager
+def _film_later(
+    face: Face, path: Path | None, size: tuple[int, int], camera: str, quality: str, fps: float, duration: float | None
+) -> Iterator[Callable[[float], None]]:
+    """As :func:`_film`, but drawn after the end: a slow machine films as smoothly as a fast one."""
+    del duration
     from agentface.io.video import VideoWriter
 
-    with ExitStack() as stack:
-        video = stack.enter_context(VideoWriter(path, size, fps))
-        face.render(size, camera, quality)
-        advance = stack.enter_context(_progress(path, duration))
+    assert path is not None, "every-frame goes with a file"  # noqa: S101 - checked above, said to the type checker
+    VideoWriter(path, size, fps).discard()  # what cannot be written is told before the recording
+    face.step(0.0)
+    noted: list[tuple[float, FacePose]] = []
+    yield lambda time: noted.append((time, face.pose))
+    with _writer(face, path, size, camera, quality, fps, noted[-1][0] if noted else None) as draw:
+        for time, pose in noted:
+            draw(time, pose)
 
-        def on_frame(time: float) -> None:
-            video.add(face.render(size, camera, quality), time)
+
+@contextmanager
+def _writer(
+    face: Face, path: Path, size: tuple[int, int], camera: str, quality: str, fps: float, duration: float | None
+) -> Iterator[Callable[[float, FacePose], None]]:
+    from agentface.io.video import VideoWriter
+
+    with VideoWriter(path, size, fps) as video, _progress(path, duration) as advance:
+
+        def draw(time: float, pose: FacePose) -> None:
+            video.add(face.render(size, camera, quality, pose=pose), time)
             advance(time)
 
-        yield on_frame
+        yield draw
 
 
 @contextmanager

@@ -1,4 +1,4 @@
-"""Vertices in blocks of neighbours with the muscles that may move them: what the compiled kernel walks over."""
+"""Vertices in blocks, each with the muscles that may move them: what the compiled kernel walks over."""
 
 from __future__ import annotations
 
@@ -9,7 +9,15 @@ import numpy.typing as npt
 
 from agentface.anatomy.muscle_set import MuscleSet
 from agentface.conventions import Doubles, Floats, Indices
-from agentface.deform.kernels import LANES
+from agentface.deform.kernels import FIELDS, LANES
+
+
+_MARGIN = 1e-6
+"""m: more than single precision loses over a face."""
+_NEAR = 0.008
+"""m: vertices share a block when they are as near as this to the same muscles; a usual travel."""
+_EXTENT = 0.05
+"""m: how far apart two vertices are as unlike as one inside and one outside a muscle's zone."""
 
 
 class Blocks(NamedTuple):
@@ -26,81 +34,79 @@ class Blocks(NamedTuple):
     """``(B + 1,)``: block b has the pairs ``first[b]`` to ``first[b + 1] - 1``."""
     owner: Indices
     """``(P,)``, the muscle of a pair."""
+    slack: Floats
+    """``(P,)`` m, rising within a block: how far its vertices travel before one may meet the muscle's zone."""
+    strongest: Floats
+    """``(P,)`` m, the largest of ``pull``."""
     pull: Floats
     """``(P, LANES)`` m, elasticity times reach."""
     fibre: Floats
-    """``(M, 16)``: origin, axis / (1 - edge), -edge / (1 - edge), 1 / Rs, 1 / (Rf - Rs), Rs / (Rf - Rs), the slope and
-    base of the angular fall-off, sin(zone), edge = cos(zone), 1 - edge, Rf."""
+    """``(M, FIELDS)``: origin, axis / (1 - edge), -edge / (1 - edge), 1 / Rs, 1 / (Rf - Rs), Rs / (Rf - Rs), the
+    slope and base of the angular fall-off, where edge = cos(zone)."""
 
 
 def pack(rest: Floats, muscles: MuscleSet) -> Blocks:
     """The blocks of a face at rest; ``rest`` is ``(V, 3)`` m."""
-    reachable = movable(rest, muscles)
-    moving = np.flatnonzero(reachable.any(axis=0))
-    order = _neighbours(rest, moving)
+    apart = slacks(rest, muscles)
+    moving = np.flatnonzero((apart == 0.0).any(axis=0))
+    traits = np.concatenate([rest[moving].T / _EXTENT, np.maximum(1.0 - apart[:, moving] / _NEAR, 0.0)]).T
+    order = moving[_alike(traits, np.arange(len(moving)))]
     count = -(-len(order) // LANES)
     vertex = np.resize(np.append(order, np.repeat(order[-1:], count * LANES - len(order))), (count, LANES))
-    weights = np.where(reachable, muscles.elasticity[:, None] * muscles.reach, 0.0)
-    by_block = np.ascontiguousarray(weights[:, vertex].transpose(1, 0, 2), dtype=np.float32)
-    acts = by_block.any(axis=2)
+    strength = muscles.elasticity[:, None] * muscles.reach
+    slack, strongest = apart[:, vertex].min(axis=2).T, strength[:, vertex].max(axis=2).T
+    owner = np.argsort(slack, axis=1, kind="stable")
+    slack, strongest = (np.take_along_axis(table, owner, axis=1) for table in (slack, strongest))
+    # a block travels at most what the muscles before move it together
+    travel = np.cumsum(strongest, axis=1) - strongest
+    meets = np.logical_and.accumulate(slack <= travel + 10 * _MARGIN, axis=1)
+    block = np.nonzero(meets)[0]
     first = np.zeros(count + 1, dtype=np.int32)
-    np.cumsum(acts.sum(axis=1), out=first[1:])
+    np.cumsum(meets.sum(axis=1), out=first[1:])
     return Blocks(
         home=np.ascontiguousarray(rest[vertex].transpose(0, 2, 1), dtype=np.float32).reshape(count, 3 * LANES),
         vertex=vertex.astype(np.int32),
         first=first,
-        owner=np.nonzero(acts)[1].astype(np.int32),
-        pull=np.ascontiguousarray(by_block[acts]),
+        owner=owner[meets].astype(np.int32),
+        slack=slack[meets].astype(np.float32),
+        strongest=strongest[meets].astype(np.float32),
+        pull=np.ascontiguousarray(strength[owner[meets][:, None], vertex[block]], dtype=np.float32),
         fibre=_fibres(muscles),
     )
 
 
-def movable(rest: Floats, muscles: MuscleSet) -> npt.NDArray[np.bool_]:
-    """``(M, V)``: which muscle can move which vertex, however the others contract; never too few.
+def slacks(rest: Floats, muscles: MuscleSet) -> Doubles:
+    """float64 ``(M, V)`` m: how far each vertex can travel, at least, before it is in a muscle's zone.
 
-    A vertex travels at most the sum of the largest displacements that the muscles have anywhere within its travel;
-    a few rounds from a bound that is too wide narrow it. A muscle whose zone is further off never meets the vertex,
-    and a vertex that is in no zone at rest never leaves.
+    0 where it is in the zone at rest, infinite where the muscle cannot move it.
     """
     spoke = rest.astype(np.float64)[None] - muscles.origin[:, None]
-    distance = np.maximum(np.linalg.norm(spoke, axis=2), _MARGIN)
-    angle = np.arccos(np.clip(np.einsum("mvc,mc->mv", spoke, muscles.axis) / distance, -1.0, 1.0))
-    strongest = muscles.elasticity[:, None] * muscles.reach
-    still = ~_largest(distance, angle, muscles, np.full(rest.shape[:1], _MARGIN), strongest).any(axis=0)
-    strongest[:, still] = 0.0
-    travel = strongest.sum(axis=0)
-    for _ in range(6):
-        meets = _largest(distance, angle, muscles, travel + _MARGIN, strongest)
-        travel = meets.sum(axis=0)
-    return meets > 0.0
+    along = np.einsum("mvc,mc->mv", spoke, muscles.axis)
+    square = np.einsum("mvc,mvc->mv", spoke, spoke)
+    aside = np.sqrt(np.maximum(square - along * along, 0.0))
+    # the nearest point of a cone is on its side, or at its tip for what is behind that
+    side = aside * np.cos(muscles.zone)[:, None] - along * np.sin(muscles.zone)[:, None]
+    beyond = np.sqrt(square) - muscles.fall_finish[:, None]
+    apart = np.maximum(np.maximum(side, beyond) - _MARGIN, 0.0)
+    return np.where(muscles.elasticity[:, None] * muscles.reach > 0.0, apart, np.inf)
 
 
-def _largest(distance: Doubles, angle: Doubles, muscles: MuscleSet, travel: Doubles, strongest: Doubles) -> Doubles:
-    """``(M, V)`` m: at least what each muscle can move each vertex while that is within ``travel (V,)`` of its rest."""
-    start, finish, edge = muscles.fall_start[:, None], muscles.fall_finish[:, None], np.cos(muscles.zone)[:, None]
-    swing = np.where(travel < distance, np.arcsin(np.minimum(travel / distance, 1.0)), np.pi)
-    cosine = np.cos(np.maximum(angle - swing, 0.0))
-    inside = cosine if muscles.falloff == "waters" else (cosine - edge) / (1.0 - edge)
-    short = np.maximum(1.0 - (distance + travel) / start, 0.0)
-    far = np.maximum((distance - travel - start) / (finish - start), 0.0)
-    radial = np.cos(np.minimum(np.maximum(short, far), 1.0) * (np.pi / 2))
-    meets = (cosine >= edge) & (far < 1.0)
-    return np.where(meets, strongest * np.maximum(inside, 0.0) * radial, 0.0)
+def _alike(traits: Doubles, chosen: npt.NDArray[np.intp]) -> npt.NDArray[np.intp]:
+    """``chosen`` rows of ``traits (N, K)`` in an order whose consecutive blocks are alike.
 
-
-_MARGIN = 1e-6
-"""m: more than single precision loses over a face."""
-
-
-def _neighbours(rest: Floats, chosen: npt.NDArray[np.intp]) -> npt.NDArray[np.intp]:
-    """``chosen`` in an order whose consecutive blocks are compact: halved along the longest side, again and again."""
+    They are halved across the direction in which they differ most, again and again; three rounds of power iteration
+    find that well enough.
+    """
     if len(chosen) <= LANES:
         return chosen
-    points = rest[chosen]
-    longest = int(np.argmax(np.ptp(points, axis=0)))
-    ranked = chosen[np.argsort(points[:, longest], kind="stable")]
+    spread = traits[chosen] - traits[chosen].mean(axis=0)
+    direction = spread[np.argmax(np.einsum("nk,nk->n", spread, spread))]
+    for _ in range(3):
+        direction = (spread @ direction) @ spread
+        direction /= np.linalg.norm(direction) or 1.0
+    ranked = chosen[np.argsort(spread @ direction, kind="stable")]
     half = max(1, len(chosen) // LANES // 2) * LANES
-    return np.concatenate([_neighbours(rest, ranked[:half]), _neighbours(rest, ranked[half:])])
+    return np.concatenate([_alike(traits, ranked[:half]), _alike(traits, ranked[half:])])
 
 
 def _fibres(muscles: MuscleSet) -> Floats:
@@ -122,9 +128,6 @@ def _fibres(muscles: MuscleSet) -> Floats:
         muscles.fall_start * gap,
         1.0 - edge if waters else np.ones_like(edge),
         edge if waters else np.zeros_like(edge),
-        np.sin(muscles.zone),
-        edge,
-        1.0 - edge,
-        muscles.fall_finish,
     ]
-    return np.column_stack(columns).astype(np.float32)
+    table: Floats = np.column_stack(columns).astype(np.float32)
+    return table.reshape(-1, FIELDS)

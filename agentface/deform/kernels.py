@@ -13,15 +13,27 @@ from numba import njit
 
 from agentface.conventions import Doubles, Floats, Indices
 from agentface.deform.combine import NOTHING
+from agentface.deform.simd import (
+    WIDTH,
+    fill,
+    inverse_root,
+    larger,
+    largest,
+    load,
+    smaller,
+    splat,
+    store,
+    where_positive,
+)
 
-LANES = 64
-"""Vertices a block: the inner loops run over them, so that they fill whole vector registers."""
+LANES = WIDTH
+"""Vertices a block."""
+FIELDS = 12
+"""Constants a muscle."""
 
-# One array holds a block's positions and their changes, because the compiler then knows that they do not overlap.
-_Y, _Z, _DX, _DY, _DZ = LANES, 2 * LANES, 3 * LANES, 4 * LANES, 5 * LANES
 _F = np.float32
-_ZERO, _HALF, _ONE = _F(0.0), _F(0.5), _F(1.0)
-_MARGIN = _F(1e-10)  # m^2, wider than rounding
+_ZERO, _ONE = _F(0.0), _F(1.0)
+_MARGIN = _F(1e-5)  # m, wider than the rounding of a sum of displacements
 _SMALLEST = _F(1e-36)  # m^4, near the end of single precision
 # Keeps 1 / distance finite at a muscle's origin; its root, 1e-10 m, is far below single precision here.
 _TINY = _F(1e-20)
@@ -53,19 +65,21 @@ def spread(contractions: Doubles, step: float, parts: Floats) -> int:
     return -1
 
 
-@njit(cache=True, fastmath=True, error_model="numpy")
+@njit(cache=True)
 def contract(
     rest: Floats,
     home: Floats,
     vertex: Indices,
     first: Indices,
     owner: Indices,
+    slack: Floats,
+    strongest: Floats,
     pull: Floats,
     fibre: Floats,
     parts: Floats,
     out: Floats,
 ) -> None:
-    """Moves the vertices by a schedule of contractions; shapes as in :func:`agentface.deform.blocks.pack`.
+    """Moves the vertices by a schedule of contractions; shapes as in :class:`agentface.deform.blocks.Blocks`.
 
     Args:
         rest: ``(V, 3)`` m.
@@ -73,152 +87,99 @@ def contract(
         vertex: ``(B, LANES)``, the vertex of each lane.
         first: ``(B + 1,)``, the range of pairs of each block.
         owner: ``(P,)``, the muscle of each pair.
+        slack: ``(P,)`` m, rising within a block: how far its vertices travel before one meets the muscle.
+        strongest: ``(P,)`` m, the largest of ``pull``.
         pull: ``(P, LANES)`` m, elasticity times reach.
-        fibre: ``(M, 16)``, a muscle's constants.
+        fibre: ``(M, FIELDS)``, a muscle's constants.
         parts: ``(S, M)``, what contracts in each step.
         out: ``(V, 3)`` m.
     """
     still, moved = rest.ravel(), out.ravel()
     for index in range(still.shape[0]):
         moved[index] = still[index]
-    lanes = np.empty(6 * LANES, dtype=np.float32)
-    ball = np.empty(4, dtype=np.float32)
-    busy = np.zeros(parts.shape[1], dtype=np.bool_)
-    acting = np.empty(parts.shape[1], dtype=np.int32)
+    whole = np.zeros(parts.shape[1], dtype=np.float32)
     for step in range(parts.shape[0]):
         for muscle in range(parts.shape[1]):
-            busy[muscle] |= parts[step, muscle] > _ZERO
+            whole[muscle] += parts[step, muscle]
+    lanes = np.empty(3 * LANES, dtype=np.float32)
+    pairs = np.empty(parts.shape[1] + 1, dtype=np.int32)
+    muscles = np.empty(parts.shape[1] + 1, dtype=np.int32)
+    bounds = np.empty(parts.shape[1] + 1, dtype=np.float32)
     for block in range(home.shape[0]):
         count = 0
+        travel = _MARGIN
         for pair in range(first[block], first[block + 1]):
-            if busy[owner[pair]]:
-                acting[count] = pair
-                count += 1
-        if count == 0:
-            continue
-        for index in range(_DX):
-            lanes[index] = home[block, index]
-        for step in range(parts.shape[0]):
-            contract_block(acting, count, owner, pull, fibre, parts, step, lanes, ball)
-        store_block(lanes, vertex, block, out)
-
-
-@njit(cache=True)
-def store_block(lanes: Floats, vertex: Indices, block: int, out: Floats) -> None:
-    """Writes the positions of one block to its vertices."""
-    for lane in range(LANES):
-        row = vertex[block, lane]
-        out[row, 0] = lanes[lane]
-        out[row, 1] = lanes[_Y + lane]
-        out[row, 2] = lanes[_Z + lane]
+            if slack[pair] > travel:
+                break
+            muscle = owner[pair]
+            pairs[count], muscles[count], bounds[count] = pair, muscle, slack[pair]
+            count += 1 if whole[muscle] > _ZERO else 0
+            travel += whole[muscle] * strongest[pair]
+        if count and bounds[0] == _ZERO:
+            contract_block(home, block, pairs, muscles, bounds, count, pull, fibre, parts, lanes)
+            for lane in range(LANES):
+                row = vertex[block, lane]
+                out[row, 0] = lanes[lane]
+                out[row, 1] = lanes[LANES + lane]
+                out[row, 2] = lanes[2 * LANES + lane]
 
 
 @njit(cache=True, fastmath=True, error_model="numpy")
 def contract_block(
-    acting: Indices,
+    home: Floats,
+    block: int,
+    pairs: Indices,
+    muscles: Indices,
+    bounds: Floats,
     count: int,
-    owner: Indices,
     pull: Floats,
     fibre: Floats,
     parts: Floats,
-    step: int,
     lanes: Floats,
-    ball: Floats,
 ) -> None:
-    """One step of one block with the first ``count`` pairs of ``acting``; a muscle out of reach is left out."""
-    for index in range(_DX, 6 * LANES):
-        lanes[index] = _ZERO
-    enclose(lanes, ball)
-    for index in range(count):
-        pair = acting[index]
-        muscle = owner[pair]
-        part = parts[step, muscle]
-        if part > _ZERO and meets(fibre, muscle, ball):
-            pull_block(fibre, muscle, part, pull, pair, lanes)
-    for index in range(_DX):
-        lanes[index] -= lanes[_DX + index]
+    """Writes to ``lanes`` where the schedule takes one block by the first ``count`` of ``pairs``, nearest first.
 
-
-@njit(cache=True, fastmath=True, error_model="numpy")
-def enclose(lanes: Floats, ball: Floats) -> None:
-    """Sets ``ball (4,)`` to the centre and radius of a ball around the vertices of a block."""
-    square = _MARGIN
-    for axis in range(3):
-        low = lanes[axis * LANES]
-        high = low
-        for index in range(axis * LANES, axis * LANES + LANES):
-            low = min(low, lanes[index])
-            high = max(high, lanes[index])
-        ball[axis] = _HALF * (low + high)
-        square += (_HALF * (high - low)) ** 2
-    ball[3] = math.sqrt(square)
-
-
-@njit(cache=True, fastmath=True, error_model="numpy")
-def meets(fibre: Floats, muscle: int, ball: Floats) -> bool:
-    """Whether a ball may meet a muscle's zone: the ball around its origin, and the half space that holds its cone."""
-    x, y, z = ball[0] - fibre[muscle, 0], ball[1] - fibre[muscle, 1], ball[2] - fibre[muscle, 2]
-    square = x * x + y * y + z * z
-    limit = fibre[muscle, 15] + ball[3]
-    if square > limit * limit:
-        return False
-    along = (x * fibre[muscle, 3] + y * fibre[muscle, 4] + z * fibre[muscle, 5]) * fibre[muscle, 14]
-    aside = math.sqrt(max(square - along * along, _ZERO))
-    inside: bool = aside * fibre[muscle, 13] - along * fibre[muscle, 12] <= ball[3]
-    return inside
-
-
-@njit(cache=True, fastmath=True, error_model="numpy")
-def pull_block(fibre: Floats, muscle: int, part: float, pull: Floats, pair: int, lanes: Floats) -> None:
-    """Adds one muscle's pull, away from its origin and to be subtracted, to the changes of a block.
-
-    The radial fall-off needs no branch: of its rising and falling argument the larger is the one that holds. The
-    smooth angular fall-off needs none either; that with a cliff has a loop of its own, which is a third slower.
+    A muscle that the block has not travelled far enough to meet is left out, and those behind it with it. The radial
+    fall-off needs no branch: of its rising and falling argument the larger is the one that holds.
     """
-    ox, oy, oz = fibre[muscle, 0], fibre[muscle, 1], fibre[muscle, 2]
-    rise, fall, start = fibre[muscle, 7], fibre[muscle, 8], fibre[muscle, 9]
-    slope, base = part * fibre[muscle, 10], part * fibre[muscle, 11]
-    ax, ay, az = slope * fibre[muscle, 3], slope * fibre[muscle, 4], slope * fibre[muscle, 5]
-    shift = slope * fibre[muscle, 6]
-    if base != _ZERO:
-        pull_block_cliff(fibre, muscle, part, pull, pair, lanes)
-        return
-    for lane in range(LANES):
-        x, y, z = lanes[lane] - ox, lanes[_Y + lane] - oy, lanes[_Z + lane] - oz
-        square = x * x + y * y + (z * z + _TINY)
-        inverse = _ONE / math.sqrt(square)
-        distance = square * inverse
-        angular = max((x * ax + y * ay + z * az) * inverse + shift, _ZERO)
-        u = min(max(_ONE - distance * rise, distance * fall - start), _ONE)
-        q = u * u
-        radial = (_ONE - q) * (_ONE + q * (_Q1 + q * (_Q2 + q * _Q3)))
-        weight = pull[pair, lane] * inverse * angular * radial
-        lanes[_DX + lane] += weight * x
-        lanes[_DY + lane] += weight * y
-        lanes[_DZ + lane] += weight * z
-
-
-@njit(cache=True, fastmath=True, error_model="numpy")
-def pull_block_cliff(fibre: Floats, muscle: int, part: float, pull: Floats, pair: int, lanes: Floats) -> None:
-    """As :func:`pull_block`, for an angular fall-off that is not zero at the edge of the zone (Waters)."""
-    ox, oy, oz = fibre[muscle, 0], fibre[muscle, 1], fibre[muscle, 2]
-    ax, ay, az, shift = fibre[muscle, 3], fibre[muscle, 4], fibre[muscle, 5], fibre[muscle, 6]
-    rise, fall, start = fibre[muscle, 7], fibre[muscle, 8], fibre[muscle, 9]
-    slope, base = part * fibre[muscle, 10], part * fibre[muscle, 11]
-    for lane in range(LANES):
-        x, y, z = lanes[lane] - ox, lanes[_Y + lane] - oy, lanes[_Z + lane] - oz
-        square = x * x + y * y + z * z + _TINY
-        inverse = _ONE / math.sqrt(square)
-        distance = square * inverse
-        inside = (x * ax + y * ay + z * az) * inverse + shift
-        u = min(max(_ONE - distance * rise, distance * fall - start), _ONE)
-        q = u * u
-        radial = (_ONE - q) * (_ONE + q * (_Q1 + q * (_Q2 + q * _Q3)))
-        angular = inside * slope + base if inside >= _ZERO else _ZERO
-        weight = pull[pair, lane] * inverse * angular * radial
-        lanes[_DX + lane] += weight * x
-        lanes[_DY + lane] += weight * y
-        lanes[_DZ + lane] += weight * z
+    start = block * 3 * LANES
+    hx, hy, hz = load(home, start), load(home, start + LANES), load(home, start + 2 * LANES)
+    px, py, pz = hx, hy, hz
+    travel = _ZERO
+    for step in range(parts.shape[0]):
+        dx, dy, dz = splat(_ZERO), splat(_ZERO), splat(_ZERO)
+        for index in range(count):
+            if bounds[index] > travel:
+                break
+            muscle = muscles[index]
+            part = parts[step, muscle]
+            if part == _ZERO:
+                continue
+            at = muscle * FIELDS
+            x, y, z = px - fill(fibre, at), py - fill(fibre, at + 1), pz - fill(fibre, at + 2)
+            square = z * z + (y * y + (x * x + _TINY))
+            inverse = inverse_root(square)
+            distance = square * inverse
+            along = x * fill(fibre, at + 3) + y * fill(fibre, at + 4) + z * fill(fibre, at + 5)
+            angular = along * inverse + fill(fibre, at + 6)
+            base = fibre[muscle, 11]
+            if base == _ZERO:
+                angular = larger(angular, splat(_ZERO))
+            else:
+                angular = where_positive(angular, angular * fill(fibre, at + 10) + base)
+            rising = _ONE - distance * fill(fibre, at + 7)
+            falling = distance * fill(fibre, at + 8) - fill(fibre, at + 9)
+            u = smaller(larger(rising, falling), splat(_ONE))
+            q = u * u
+            radial = (_ONE - q) * (_ONE + q * (_Q1 + q * (_Q2 + q * _Q3)))
+            weight = load(pull, pairs[index] * LANES) * part * inverse * angular * radial
+            dx, dy, dz = dx + weight * x, dy + weight * y, dz + weight * z
+        px, py, pz = px - dx, py - dy, pz - dz
+        x, y, z = px - hx, py - hy, pz - hz
+        travel = math.sqrt(largest(x * x + y * y + z * z))
+    store(lanes, 0, px)
+    store(lanes, LANES, py)
+    store(lanes, 2 * LANES, pz)
 
 
 @njit(cache=True, fastmath=True, error_model="numpy")
