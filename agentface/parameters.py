@@ -75,18 +75,15 @@ def _build() -> tuple[Parameter, ...]:
         rows += [(f"{name}_{side}", kind, "contraction", 0, 1, text) for name, text in table.items() for side in SIDES]
     rows += [(name, "pseudo", "contraction", 0, 1, text) for name, text in _MIDDLE.items()]
     rows.append(("jaw_open", "jaw", "of the widest opening", 0, 1, "drops the jaw (AU 26, 27)"))
-    for axis, limit_deg, text in (("yaw", 50, "to the person's left"), ("pitch", 40, "upward")):
-        rows.append(
-            (f"gaze_{axis}", "gaze", "rad", -math.radians(limit_deg), math.radians(limit_deg), f"the eyes turn {text}")
-        )
-    for axis, limit_deg, text in (
-        ("yaw", 80, "turns to its left"),
-        ("pitch", 60, "looks up"),
-        ("roll", 50, "tilts to its left"),
+    for name, limit_deg, text in (
+        ("gaze_yaw", 50, "the eyes turn to the person's left"),
+        ("gaze_pitch", 40, "the eyes turn upward"),
+        ("head_yaw", 80, "the head turns to its left"),
+        ("head_pitch", 60, "the head looks up"),
+        ("head_roll", 50, "the head tilts to its left"),
     ):
-        rows.append(
-            (f"head_{axis}", "head", "rad", -math.radians(limit_deg), math.radians(limit_deg), f"the head {text}")
-        )
+        limit = float(np.float32(math.radians(limit_deg)))  # what a pose gives back at its limit, it takes again
+        rows.append((name, "gaze" if name.startswith("gaze") else "head", "rad", -limit, limit, text))
     return tuple(Parameter(row[0], index, *row[1:]) for index, row in enumerate(rows))
 
 

@@ -10,7 +10,7 @@ import numpy.typing as npt
 from agentface.anatomy.muscle_set import MuscleSet
 from agentface.conventions import Doubles, Floats, Indices
 from agentface.deform.kernels import FIELDS, LANES
-
+from agentface.deform.simd import PART
 
 _MARGIN = 1e-6
 """m: more than single precision loses over a face."""
@@ -41,7 +41,7 @@ class Blocks(NamedTuple):
     pull: Floats
     """``(P, LANES)`` m, elasticity times reach."""
     fibre: Floats
-    """``(M, FIELDS)``: origin, axis / (1 - edge), -edge / (1 - edge), 1 / Rs, 1 / (Rf - Rs), Rs / (Rf - Rs), the
+    """``(M, FIELDS, PART)``, each PART times: origin, axis / (1 - edge), -edge / (1 - edge), 1 / Rs, 1 / (Rf - Rs), Rs / (Rf - Rs), the
     slope and base of the angular fall-off, where edge = cos(zone)."""
 
 
@@ -80,15 +80,16 @@ def slacks(rest: Floats, muscles: MuscleSet) -> Doubles:
 
     0 where it is in the zone at rest, infinite where the muscle cannot move it.
     """
-    spoke = rest.astype(np.float64)[None] - muscles.origin[:, None]
-    along = np.einsum("mvc,mc->mv", spoke, muscles.axis)
-    square = np.einsum("mvc,mvc->mv", spoke, spoke)
+    points, origin, axis = rest.astype(np.float64), muscles.origin, muscles.axis
+    along = axis @ points.T - (axis * origin).sum(axis=1)[:, None]
+    square = (points**2).sum(axis=1) - 2.0 * origin @ points.T + (origin**2).sum(axis=1)[:, None]
+    np.maximum(square, 0.0, out=square)
     aside = np.sqrt(np.maximum(square - along * along, 0.0))
     # the nearest point of a cone is on its side, or at its tip for what is behind that
     side = aside * np.cos(muscles.zone)[:, None] - along * np.sin(muscles.zone)[:, None]
     beyond = np.sqrt(square) - muscles.fall_finish[:, None]
     apart = np.maximum(np.maximum(side, beyond) - _MARGIN, 0.0)
-    return np.where(muscles.elasticity[:, None] * muscles.reach > 0.0, apart, np.inf)
+    return np.where((muscles.elasticity[:, None] > 0.0) & (muscles.reach > 0.0), apart, np.inf)
 
 
 def _alike(traits: Doubles, chosen: npt.NDArray[np.intp]) -> npt.NDArray[np.intp]:
@@ -130,4 +131,4 @@ def _fibres(muscles: MuscleSet) -> Floats:
         edge if waters else np.zeros_like(edge),
     ]
     table: Floats = np.column_stack(columns).astype(np.float32)
-    return table.reshape(-1, FIELDS)
+    return np.ascontiguousarray(np.repeat(table.reshape(-1, FIELDS, 1), PART, axis=2))

@@ -90,7 +90,7 @@ def contract(
         slack: ``(P,)`` m, rising within a block: how far its vertices travel before one meets the muscle.
         strongest: ``(P,)`` m, the largest of ``pull``.
         pull: ``(P, LANES)`` m, elasticity times reach.
-        fibre: ``(M, FIELDS)``, a muscle's constants.
+        fibre: ``(M, FIELDS, PART)``, a muscle's constants, each as often as a register has lanes.
         parts: ``(S, M)``, what contracts in each step.
         out: ``(V, 3)`` m.
     """
@@ -98,9 +98,11 @@ def contract(
     for index in range(still.shape[0]):
         moved[index] = still[index]
     whole = np.zeros(parts.shape[1], dtype=np.float32)
+    acts = np.zeros(parts.shape[1], dtype=np.int64)
     for step in range(parts.shape[0]):
         for muscle in range(parts.shape[1]):
             whole[muscle] += parts[step, muscle]
+            acts[muscle] |= parts[step, muscle] > _ZERO
     lanes = np.empty(3 * LANES, dtype=np.float32)
     pairs = np.empty(parts.shape[1] + 1, dtype=np.int32)
     muscles = np.empty(parts.shape[1] + 1, dtype=np.int32)
@@ -113,7 +115,7 @@ def contract(
                 break
             muscle = owner[pair]
             pairs[count], muscles[count], bounds[count] = pair, muscle, slack[pair]
-            count += 1 if whole[muscle] > _ZERO else 0
+            count += acts[muscle]
             travel += whole[muscle] * strongest[pair]
         if count and bounds[0] == _ZERO:
             contract_block(home, block, pairs, muscles, bounds, count, pull, fibre, parts, lanes)
@@ -155,20 +157,20 @@ def contract_block(
             part = parts[step, muscle]
             if part == _ZERO:
                 continue
-            at = muscle * FIELDS
-            x, y, z = px - fill(fibre, at), py - fill(fibre, at + 1), pz - fill(fibre, at + 2)
+            at = muscle * FIELDS * PART
+            x, y, z = px - tile(fibre, at), py - tile(fibre, at + PART), pz - tile(fibre, at + 2 * PART)
             square = z * z + (y * y + (x * x + _TINY))
             inverse = inverse_root(square)
             distance = square * inverse
-            along = x * fill(fibre, at + 3) + y * fill(fibre, at + 4) + z * fill(fibre, at + 5)
-            angular = along * inverse + fill(fibre, at + 6)
-            base = fibre[muscle, 11]
+            along = x * tile(fibre, at + 3 * PART) + y * tile(fibre, at + 4 * PART) + z * tile(fibre, at + 5 * PART)
+            angular = along * inverse + tile(fibre, at + 6 * PART)
+            base = fibre[muscle, 11, 0]
             if base == _ZERO:
                 angular = larger(angular, splat(_ZERO))
             else:
-                angular = where_positive(angular, angular * fill(fibre, at + 10) + base)
-            rising = _ONE - distance * fill(fibre, at + 7)
-            falling = distance * fill(fibre, at + 8) - fill(fibre, at + 9)
+                angular = where_positive(angular, angular * tile(fibre, at + 10 * PART) + base)
+            rising = _ONE - distance * tile(fibre, at + 7 * PART)
+            falling = distance * tile(fibre, at + 8 * PART) - tile(fibre, at + 9 * PART)
             u = smaller(larger(rising, falling), splat(_ONE))
             q = u * u
             radial = (_ONE - q) * (_ONE + q * (_Q1 + q * (_Q2 + q * _Q3)))
@@ -176,7 +178,7 @@ def contract_block(
             dx, dy, dz = dx + weight * x, dy + weight * y, dz + weight * z
         px, py, pz = px - dx, py - dy, pz - dz
         x, y, z = px - hx, py - hy, pz - hz
-        travel = math.sqrt(largest(x * x + y * y + z * z))
+        travel = _F(math.sqrt(largest(x * x + y * y + z * z)))
     store(lanes, 0, px)
     store(lanes, LANES, py)
     store(lanes, 2 * LANES, pz)

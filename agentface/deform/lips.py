@@ -32,9 +32,9 @@ def _press(model: HeadModel) -> Doubles:
     """The red of the lips is rolled in and flattened between the lips; corners stay."""
     points = model.vertices.astype(np.float64)
     across, above, height, width = _mouth_frame(model, points)
-    near = _fade(np.abs(above) / (2.0 * height)) * _fade(np.abs(across) / (1.15 * width)) * _front(model, points)
+    near = _fade(np.abs(above) / (2.3 * height)) * _fade(np.abs(across) / (1.15 * width)) * _front(model, points)
     field = np.zeros_like(points)
-    field[:, 1] = -0.42 * above * near
+    field[:, 1] = -0.52 * above * near
     field[:, 2] = -0.16 * height * near * _fade(np.abs(above) / (1.3 * height))
     return field
 
@@ -55,9 +55,9 @@ def _pucker(model: HeadModel) -> Doubles:
 def _mouth_frame(model: HeadModel, points: Doubles) -> tuple[Doubles, Doubles, float, float]:
     """Places relative to the lip seam: across and above it, the lips' mean height and the mouth's half width, in m."""
     seam, edge = model.lips.rings[_SEAM], model.lips.rings[_VERMILION]
-    line = points[sorted({*seam.upper, *seam.lower}, key=lambda vertex: float(points[vertex, 0]))]
+    line = 0.5 * sum(np.interp(points[:, 0], *points[half[::-1], :2].T) for half in (seam.upper, seam.lower))
     middle = model.landmarks["upper_lip_middle"][1] - model.landmarks["lower_lip_middle"][1]
-    above = points[:, 1] - np.interp(points[:, 0], line[:, 0], line[:, 1])
+    above = points[:, 1] - line
     return points[:, 0], above, 0.5 * float(middle), float(points[edge.upper, 0].max())
 
 

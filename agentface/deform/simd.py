@@ -1,11 +1,13 @@
 """Vectors of single precision numbers for compiled kernels: arithmetic on :data:`WIDTH` lanes, held in registers.
 
 numba turns a loop into vector instructions only where it can prove much, and keeps sums in memory between two loops.
-A value made by :func:`load`, :func:`fill` or :func:`splat` is WIDTH numbers that ``+ - *`` take lane by lane. It is
+A value made by :func:`load`, :func:`tile` or :func:`splat` is WIDTH numbers that ``+ - *`` take lane by lane. It is
 made of parts of eight, which is a register of AVX; LLVM splits them where registers are narrower. An index counts
 the elements of an array in C order, whatever its shape, and is not checked.
 """
 
+# mypy: disable-error-code="untyped-decorator, no-untyped-call, import-untyped, attr-defined"
+# numba's extension points carry no types.
 from __future__ import annotations
 
 import operator
@@ -13,22 +15,24 @@ from collections.abc import Callable
 from typing import Any
 
 from llvmlite import ir
-from numba import types
+from numba import extending, types
 from numba.core import cgutils
 from numba.core.datamodel import PrimitiveModel, register_default
-from numba.extending import intrinsic, overload
 
-_PART = 8
-_PARTS = 2
-WIDTH = _PART * _PARTS
+PART = 8
+"""Lanes of a register."""
+_PARTS
+WIDTH = PART * _PARTS
 """Lanes of a vector: two registers, because the chain of operations of one alone leaves the processor idle."""
 
-_LANES = ir.VectorType(ir.FloatType(), _PART)
+_LANES = ir.VectorType(ir.FloatType(), PART)
 _VECTOR = ir.ArrayType(_LANES, _PARTS)
 _I32 = ir.IntType(32)
+# numba's annotations keep the compiler's own arguments in a function's signature.
+_intrinsic: Any = extending.intrinsic
 
 
-class Vector(types.Type):  # type: ignore[misc]
+class Vector(types.Type):
     """The type of a vector, inside a kernel only."""
 
     def __init__(self) -> None:
@@ -36,12 +40,12 @@ class Vector(types.Type):  # type: ignore[misc]
 
 
 @register_default(Vector)
-class _VectorModel(PrimitiveModel):  # type: ignore[misc]
+class _VectorModel(PrimitiveModel):
     def __init__(self, manager: Any, kind: Any) -> None:
         super().__init__(manager, kind, _VECTOR)
 
 
-_TYPE = Vector()
+_TYPE: Any = Vector()
 
 
 def _each(builder: Any, make: Callable[..., Any], *vectors: Any) -> Any:
@@ -59,22 +63,23 @@ def _address(context: Any, builder: Any, signature: Any, args: Any) -> Any:
 
 
 def _address_of(part: int, builder: Any, start: Any) -> Any:
-    return builder.bitcast(builder.gep(start, [ir.Constant(_I32, part * _PART)]), _LANES.as_pointer())
+    return builder.bitcast(builder.gep(start, [ir.Constant(_I32, part * PART)]), _LANES.as_pointer())
 
 
 def _broadcast(builder: Any, scalar: Any) -> Any:
     empty = ir.Constant(_LANES, ir.Undefined)
     one = builder.insert_element(empty, scalar, ir.Constant(_I32, 0))
-    everywhere = builder.shuffle_vector(one, empty, ir.Constant(ir.VectorType(_I32, _PART), [0] * _PART))
+    everywhere = builder.shuffle_vector(one, empty, ir.Constant(ir.VectorType(_I32, PART), [0] * PART))
     return _each(builder, lambda: everywhere)
 
 
 def _call(builder: Any, name: str, result: Any, part: Any) -> Any:
-    function = cgutils.get_or_insert_function(builder.module, ir.FunctionType(result, [_LANES]), name)
+    declare: Any = cgutils.get_or_insert_function
+    function = declare(builder.module, ir.FunctionType(result, [_LANES]), name)
     return builder.call(function, [part])
 
 
-@intrinsic  # type: ignore[misc]
+@_intrinsic
 def load(typing: Any, array: Any, index: Any) -> Any:
     """The vector at ``index`` of a float32 array."""
 
@@ -86,7 +91,7 @@ def load(typing: Any, array: Any, index: Any) -> Any:
     return _TYPE(array, index), generate
 
 
-@intrinsic  # type: ignore[misc]
+@_intrinsic
 def store(typing: Any, array: Any, index: Any, vector: Any) -> Any:
     """Writes a vector at ``index`` of a float32 array."""
 
@@ -99,34 +104,35 @@ def store(typing: Any, array: Any, index: Any, vector: Any) -> Any:
     return types.void(array, index, vector), generate
 
 
-@intrinsic  # type: ignore[misc]
-def fill(typing: Any, array: Any, index: Any) -> Any:
-    """The element at ``index`` of a float32 array in every lane."""
+@_intrinsic
+def tile(typing: Any, array: Any, index: Any) -> Any:
+    """The :data:`PART` numbers at ``index`` of a float32 array, in every part of the vector."""
 
     def generate(context: Any, builder: Any, signature: Any, args: Any) -> Any:
-        return _broadcast(builder, builder.load(_address(context, builder, signature, args)))
+        row = builder.load(_address_of(0, builder, _address(context, builder, signature, args)), align=4)
+        return _each(builder, lambda: row)
 
     return _TYPE(array, index), generate
 
 
-@intrinsic  # type: ignore[misc]
+@_intrinsic
 def splat(typing: Any, scalar: Any) -> Any:
     """A float32 in every lane."""
     return _TYPE(types.float32), lambda context, builder, signature, args: _broadcast(builder, args[0])
 
 
-@intrinsic  # type: ignore[misc]
+@_intrinsic
 def inverse_root(typing: Any, vector: Any) -> Any:
     """1 / sqrt of every lane."""
 
     def generate(context: Any, builder: Any, signature: Any, args: Any) -> Any:
-        one = ir.Constant(_LANES, [1.0] * _PART)
+        one = ir.Constant(_LANES, [1.0] * PART)
         return _each(builder, lambda x: builder.fdiv(one, _call(builder, "llvm.sqrt.v8f32", _LANES, x)), *args)
 
     return _TYPE(_TYPE), generate
 
 
-@intrinsic  # type: ignore[misc]
+@_intrinsic
 def largest(typing: Any, vector: Any) -> Any:
     """The largest lane, a float32."""
 
@@ -146,7 +152,7 @@ def _select(builder: Any, comparison: str, a: Any, b: Any) -> Any:
 def _lane_by_lane(make: Callable[[Any, Any, Any], Any]) -> Any:
     """An operation on two vectors; ``make`` gets the builder and one part of each."""
 
-    @intrinsic  # type: ignore[misc]
+    @_intrinsic
     def operation(typing: Any, a: Any, b: Any) -> Any:
         def generate(context: Any, builder: Any, signature: Any, args: Any) -> Any:
             return _each(builder, lambda x, y: make(builder, x, y), *args)
@@ -159,7 +165,7 @@ def _lane_by_lane(make: Callable[[Any, Any, Any], Any]) -> Any:
 larger = _lane_by_lane(lambda builder, a, b: _select(builder, ">", a, b))
 where_positive = _lane_by_lane(
     lambda builder, a, b: builder.select(
-        builder.fcmp_ordered(">=", a, ir.Constant(_LANES, [0.0] * _PART)), b, ir.Constant(_LANES, [0.0] * _PART)
+        builder.fcmp_ordered(">=", a, ir.Constant(_LANES, [0.0] * PART)), b, ir.Constant(_LANES, [0.0] * PART)
     )
 )
 smaller = _lane_by_lane(lambda builder, a, b: _select(builder, "<", a, b))
@@ -168,10 +174,13 @@ smaller = _lane_by_lane(lambda builder, a, b: _select(builder, "<", a, b))
 def _define(symbol: Any, operation: Any) -> None:
     """Lets a kernel write ``symbol`` for an operation on two vectors, or a vector and a float32."""
 
-    @overload(symbol)  # type: ignore[misc]
+    def operation_of_two(a: Any, b: Any) -> Any:
+        return operation(a, b)
+
+    @extending.overload(symbol, strict=False)
     def choose(a: Any, b: Any) -> Any:
         if isinstance(a, Vector) and isinstance(b, Vector):
-            return lambda a, b: operation(a, b)
+            return operation_of_two
         if isinstance(a, Vector) and b == types.float32:
             return lambda a, b: operation(a, splat(b))
         if a == types.float32 and isinstance(b, Vector):

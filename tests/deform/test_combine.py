@@ -8,8 +8,10 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
 from agentface.anatomy.muscle_set import FALLOFFS, MuscleSet
-from agentface.deform.blocks import LANES, movable, pack
-from agentface.deform.combine import METHODS, REFERENCE, STEP, Combiner, parallel, sequential, summed
+from agentface.deform.blocks import pack, slacks
+from agentface.deform.combine import METHODS, REFERENCE, STEP, Combiner
+from agentface.deform.kernels import LANES
+from agentface.deform.vector_muscle import pull
 from agentface.errors import InvalidValueError, UnknownNameError
 from tests.deform.rig import make_rig
 
@@ -61,15 +63,36 @@ def test_the_kernel_equals_its_numpy_twin_across_the_cliffs_of_waters():
 @pytest.mark.parametrize("falloff", FALLOFFS)
 def test_blocks_leave_out_no_vertex_that_some_contractions_move(falloff):
     face = rig(falloff)
-    able = movable(face.vertices, face.muscles)
-    draw = np.random.default_rng(3)
-    for method in (parallel, sequential, summed):
-        contractions = draw.random(COUNT)
-        moved = (method(face.vertices, face.muscles, contractions) != face.vertices).any(axis=1)
-        assert not (moved & ~able.any(axis=0)).any()
     packed = pack(face.vertices, face.muscles)
-    assert set(packed.vertex.ravel()) == set(np.flatnonzero(able.any(axis=0)))
     assert packed.vertex.shape[1] == LANES
+    draw = np.random.default_rng(3)
+    for method in METHODS:
+        moved = REFERENCE[method](face.vertices, face.muscles, draw.random(COUNT)) != face.vertices
+        assert set(np.flatnonzero(moved.any(axis=1))) <= set(packed.vertex.ravel())
+
+
+@settings(max_examples=20, deadline=None)
+@given(seed=st.integers(0, 2**31), falloff=st.sampled_from(FALLOFFS))
+def test_a_vertex_that_travels_less_than_its_slack_stays_out_of_the_zone(seed, falloff):
+    face = rig(falloff)
+    apart = slacks(face.vertices, face.muscles)
+    way = np.random.default_rng(seed).normal(size=face.vertices.shape)
+    way /= np.linalg.norm(way, axis=1, keepdims=True)
+    for muscle in range(COUNT):
+        outside = np.isfinite(apart[muscle]) & (apart[muscle] > 0.0)
+        travelled = face.vertices + way * np.where(outside, apart[muscle], 0.0)[:, None]
+        assert not pull(face.muscles, muscle, travelled, 1.0)[outside].any()
+
+
+def test_a_slack_is_as_long_as_the_way_to_the_zone_is():
+    points, muscles = two_muscles()
+    apart = slacks(points, muscles)
+    inside = [pull(muscles, muscle, points, 1.0).any(axis=1) for muscle in range(2)]
+    assert ((apart == 0.0) == inside).all()
+    tail = points[0, 1] - 0.01
+    below = np.array([[-0.004, tail, 0.0]], np.float32)
+    far = dataclasses.replace(muscles, reach=np.ones((2, 1), np.float32))
+    assert slacks(below, far)[0, 0] == pytest.approx(0.05 - tail - 0.06, abs=2e-6)
 
 
 @settings(max_examples=20, deadline=None)
