@@ -41,8 +41,8 @@ class Blocks(NamedTuple):
     pull: Floats
     """``(P, LANES)`` m, elasticity times reach."""
     fibre: Floats
-    """``(M, FIELDS, PART)``, each PART times: origin, axis / (1 - edge), -edge / (1 - edge), 1 / Rs, 1 / (Rf - Rs), Rs / (Rf - Rs), the
-    slope and base of the angular fall-off, where edge = cos(zone)."""
+    """``(M, FIELDS, PART)``, each number PART times: origin, axis / (1 - edge), -edge / (1 - edge), 1 / Rs,
+    1 / (Rf - Rs), Rs / (Rf - Rs), slope and base of the angular fall-off, where edge = cos(zone)."""
 
 
 def pack(rest: Floats, muscles: MuscleSet) -> Blocks:

@@ -15,7 +15,6 @@ from agentface.conventions import Doubles, Floats, Indices
 from agentface.deform.combine import NOTHING
 from agentface.deform.simd import (
     WIDTH,
-    fill,
     inverse_root,
     larger,
     largest,
@@ -23,6 +22,7 @@ from agentface.deform.simd import (
     smaller,
     splat,
     store,
+    tile,
     where_positive,
 )
 
@@ -157,20 +157,20 @@ def contract_block(
             part = parts[step, muscle]
             if part == _ZERO:
                 continue
-            at = muscle * FIELDS * PART
-            x, y, z = px - tile(fibre, at), py - tile(fibre, at + PART), pz - tile(fibre, at + 2 * PART)
+            at = muscle * FIELDS
+            x, y, z = px - tile(fibre, at), py - tile(fibre, at + 1), pz - tile(fibre, at + 2)
             square = z * z + (y * y + (x * x + _TINY))
             inverse = inverse_root(square)
             distance = square * inverse
-            along = x * tile(fibre, at + 3 * PART) + y * tile(fibre, at + 4 * PART) + z * tile(fibre, at + 5 * PART)
-            angular = along * inverse + tile(fibre, at + 6 * PART)
+            along = x * tile(fibre, at + 3) + y * tile(fibre, at + 4) + z * tile(fibre, at + 5)
+            angular = along * inverse + tile(fibre, at + 6)
             base = fibre[muscle, 11, 0]
             if base == _ZERO:
                 angular = larger(angular, splat(_ZERO))
             else:
-                angular = where_positive(angular, angular * tile(fibre, at + 10 * PART) + base)
-            rising = _ONE - distance * tile(fibre, at + 7 * PART)
-            falling = distance * tile(fibre, at + 8 * PART) - tile(fibre, at + 9 * PART)
+                angular = where_positive(angular, angular * tile(fibre, at + 10) + base)
+            rising = _ONE - distance * tile(fibre, at + 7)
+            falling = distance * tile(fibre, at + 8) - tile(fibre, at + 9)
             u = smaller(larger(rising, falling), splat(_ONE))
             q = u * u
             radial = (_ONE - q) * (_ONE + q * (_Q1 + q * (_Q2 + q * _Q3)))

@@ -21,7 +21,7 @@ from numba.core.datamodel import PrimitiveModel, register_default
 
 PART = 8
 """Lanes of a register."""
-_PARTS
+_PARTS = 2
 WIDTH = PART * _PARTS
 """Lanes of a vector: two registers, because the chain of operations of one alone leaves the processor idle."""
 
@@ -105,14 +105,19 @@ def store(typing: Any, array: Any, index: Any, vector: Any) -> Any:
 
 
 @_intrinsic
-def tile(typing: Any, array: Any, index: Any) -> Any:
-    """The :data:`PART` numbers at ``index`` of a float32 array, in every part of the vector."""
+def tile(typing: Any, array: Any, row: Any) -> Any:
+    """The :data:`PART` numbers of one row of a float32 array with rows of that length, in every part of the vector.
+
+    Rows of one number repeated save the instructions that would spread a single one over a register.
+    """
 
     def generate(context: Any, builder: Any, signature: Any, args: Any) -> Any:
-        row = builder.load(_address_of(0, builder, _address(context, builder, signature, args)), align=4)
-        return _each(builder, lambda: row)
+        index = builder.mul(args[1], ir.Constant(args[1].type, PART))
+        start = _address(context, builder, signature, (args[0], index))
+        numbers = builder.load(_address_of(0, builder, start), align=4)
+        return _each(builder, lambda: numbers)
 
-    return _TYPE(array, index), generate
+    return _TYPE(array, row), generate
 
 
 @_intrinsic
