@@ -16,7 +16,7 @@ from agentface.conventions import Bytes, check_duration, check_fraction, check_r
 from agentface.deform.geometry import FaceGeometry
 from agentface.emotion.explanation import Explanation
 from agentface.emotion.inference import default_inference
-from agentface.emotion.state import EmotionState, canonical
+from agentface.emotion.state import EMOTIONS, EmotionState, canonical
 from agentface.errors import InvalidValueError, UnknownNameError
 from agentface.motion.clock import Clock, SystemClock
 from agentface.motion.mixer import Mixer
@@ -158,6 +158,15 @@ class Face:
         geometry = self.geometry
         self._frame_ms = 1000.0 * (self._clock.now() - start)
         return geometry
+
+    def warm_up(self) -> None:
+        """Compile or load now what the first message and the first frame need, so that they are shown at once.
+
+        Takes seconds the first time on a machine, half a second later on. Changes nothing that is shown.
+        """
+        self._inference.contractions({EMOTIONS[0]: 1.0})
+        self._deformer.deform(FacePose.of(**dict.fromkeys(MUSCLES, 1.0)))
+        self._geometry = None  # the deformer overwrites the arrays
 
     @property
     def emotion(self) -> EmotionState:

@@ -183,3 +183,24 @@ def test_public_names_are_lazy_and_complete():
     assert issubclass(UnknownNameError, AgentFaceError)
     with pytest.raises(AttributeError):
         _ = agentface.Fase
+
+
+def test_warming_up_changes_nothing_that_is_shown():
+    face = Face()
+    face.set_emotion("fear", 0.6, fade=0.0)
+    before = face.geometry.vertices.copy()
+    face.warm_up()
+    assert face.emotion["fear"] == 0.6
+    np.testing.assert_array_equal(face.geometry.vertices, before)
+
+
+@pytest.mark.gl
+def test_a_kept_pose_is_drawn_without_changing_the_face():
+    face = Face()
+    neutral = face.pose
+    plain = face.render((96, 64))
+    face.set_emotion("surprise", 1.0, fade=0.0)
+    shown = face.render((96, 64))
+    np.testing.assert_array_equal(face.render((96, 64), pose=neutral), plain)
+    np.testing.assert_array_equal(face.render((96, 64)), shown)
+    assert (plain != shown).any()

@@ -68,6 +68,7 @@ def serve(
     from agentface.io.osc.server import OscServer
 
     shown = make_face(face, deformer)
+    shown.warm_up()
     with OscServer(shown, *osc) as server:
         place = f"{server.host}:{server.port}"
         if view == "window":
@@ -101,8 +102,6 @@ def _open_window(face: Face, place: str) -> None:
 def _film(
     face: Face, path: Path | None, size: tuple[int, int], camera: str, quality: str, fps: float, duration: float | None
 ) -> Iterator[Callable[[float], None]]:
-    # The first frame compiles and uploads; made here, it does not delay the first message.
-    face.step(0.0)
     if path is None:
         yield lambda _: None
         return
@@ -121,7 +120,6 @@ def _film_later(
 
     assert path is not None, "every-frame goes with a file"  # noqa: S101 - checked above, said to the type checker
     VideoWriter(path, size, fps).discard()  # what cannot be written is told before the recording
-    face.step(0.0)
     noted: list[tuple[float, FacePose]] = []
     yield lambda time: noted.append((time, face.pose))
     with _writer(face, path, size, camera, quality, fps, noted[-1][0] if noted else None) as draw:

@@ -13,4 +13,6 @@ def show(*, face: str, deformer: str) -> None:
     """Open the live window: keys 1 to 6 raise an emotion each, the mouse turns the view."""
     from agentface.view.window import Window
 
-    Window(make_face(face, deformer)).run()
+    shown = make_face(face, deformer)
+    shown.warm_up()
+    Window(shown).run()
