@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from agentface.anatomy.build.subdivide import Level, catmull_clark, children, mirror_level
+from agentface.anatomy.build.subdivide import catmull_clark, children, mirror_level
 from agentface.conventions import Doubles, Indices
 
 MOST_LEVELS = 2
@@ -122,6 +122,3 @@ def balanced(quads: Indices, levels: Indices) -> Indices:
     highest = np.zeros(int(quads.max()) + 1, np.int32)
     np.maximum.at(highest, quads.ravel(), result.repeat(4))
     return np.maximum(result, highest[quads].max(1) - 1).astype(np.int32)
-
-
-__all__ = ["Level", "Skin", "balanced", "smallest_angle"]
