@@ -127,8 +127,10 @@ class _Borders:
     def __init__(self, regions: Regions, vertices: Floats, triangles: Indices) -> None:
         self._regions = regions
         ends = np.concatenate([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]])
-        self._from, self._to = np.concatenate([ends, ends[:, ::-1]]).T
-        self._length = np.linalg.norm(vertices[self._from] - vertices[self._to], axis=1)
+        both = np.concatenate([ends, ends[:, ::-1]])
+        self._from, to = both[np.argsort(both[:, 1], kind="stable")].T
+        self._to, self._first = np.unique(to, return_index=True)
+        self._length = np.linalg.norm(vertices[self._from] - vertices[to], axis=1)
         self._known: dict[tuple[str, ...], Floats] = {}
 
     def reach(self, row: MuscleRow, unit: float) -> Floats:
@@ -145,5 +147,6 @@ class _Borders:
     def _distance(self, inside: np.typing.NDArray[np.bool_], rounds: int = 24) -> Floats:
         distance = np.where(inside, np.float32(1e3), np.float32(0.0))
         for _ in range(rounds):
-            np.minimum.at(distance, self._to, distance[self._from] + self._length)
+            nearest = np.minimum.reduceat(distance[self._from] + self._length, self._first)
+            distance[self._to] = np.minimum(distance[self._to], nearest)
         return distance

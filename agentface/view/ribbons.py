@@ -9,6 +9,7 @@ import numpy as np
 
 from agentface.conventions import Doubles, Floats, Indices
 
+_AROUND = 0.004  # m, how far round the places triangles are looked at
 _POINTS = 5
 
 
@@ -103,7 +104,9 @@ def roots_in_front(points: Doubles, vertices: Floats, triangles: Indices) -> Roo
     a, b, c = (vertices[triangles[:, corner]].astype(np.float64) for corner in range(3))
     u, v = (b - a)[:, :2], (c - a)[:, :2]
     area = u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0]
-    towards = np.flatnonzero(area > 1e-10)
+    corners = vertices[triangles][..., :2]
+    near = (corners.max(1) > points.min(0) - _AROUND) & (corners.min(1) < points.max(0) + _AROUND)
+    towards = np.flatnonzero((area > 1e-10) & near.all(1))
     u, v, area, a = u[towards], v[towards], area[towards], a[towards]
     off = points[:, None] - a[None, :, :2]
     second = (off[..., 0] * v[:, 1] - off[..., 1] * v[:, 0]) / area
