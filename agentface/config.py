@@ -55,15 +55,21 @@ class Document:
 
     def parse(self, model: type[Model]) -> Model:
         """The document as ``model``; raises DataError with every fault found."""
+        parsed = self.collect(model)
         self.check()
+        assert parsed is not None, "a document without faults is parsed"  # noqa: S101 - for the type checker
+        return parsed
+
+    def collect(self, model: type[Model]) -> Model | None:
+        """The document as ``model``, or None with its faults remembered, for callers that look for more of them."""
         try:
             return model.model_validate(self.data)
         except ValidationError as error:
             for item in error.errors():
                 where = tuple(part for part in item["loc"] if part != "[key]")
-                self.fault(where, _expectation(item["msg"], item["type"]), _shown(item["input"]))
-        self.check()
-        raise AssertionError("unreachable: a ValidationError holds at least one error")
+                got = "nothing" if item["type"] == "missing" else _shown(item["input"])
+                self.fault(where, _expectation(item["msg"], item["type"]), got)
+            return None
 
 
 def load(path: Path, model: type[Model]) -> Model:
@@ -76,9 +82,12 @@ def _expectation(message: str, kind: str) -> str:
         return "this key"
     if kind == "extra_forbidden":
         return "no such key"
-    for prefix in ("Input should be ", "Value error, expected ", "Value error, "):
+    for prefix in ("Input should be a valid dictionary or instance of", "Input should be a valid dictionary"):
+        if message.startswith(prefix):
+            return "a table of keys and values"
+    for prefix in ("Input should be ", "Value error, expected ", "Value error, ", "List should have "):
         message = message.removeprefix(prefix)
-    return message
+    return message.removesuffix(" after validation")
 
 
 def _shown(value: Any) -> str:

@@ -151,7 +151,9 @@ def test_check_prints_all_faults_of_all_files(tmp_path):
     jaw.write_text(jaw.read_text().replace("widest_deg:", "widest:"))
     muscles.write_text(muscles.read_text().replace("risorius:", "rissorius:"))
     rules.write_text(rules_file("emotions.yaml").read_text().replace("VeryBig", "Enormous", 1))
-    said = fail("check", tmp_path / "face", rules)
+    result = call("check", tmp_path / "face", rules)
+    assert result.exit_code == 1
+    said = result.stdout
     assert re.search(rf"{jaw}:\d+: .*widest", said)
     assert re.search(rf"{muscles}:\d+: .*rissorius", said)
     assert re.search(rf"{rules}:\d+: .*Enormous", said)
@@ -160,10 +162,19 @@ def test_check_prints_all_faults_of_all_files(tmp_path):
 
 def test_check_names_files_that_it_does_not_know(tmp_path):
     (tmp_path / "cake.yaml").write_text("a: 1")
-    assert "cake.yaml" in fail("check", tmp_path / "cake.yaml")
-    assert "nothing" in fail("check", tmp_path / "jaw.yaml")
-    assert "neither" in fail("check", tmp_path)
-    assert "head.glb" in fail("check", shutil.copy(face_folder("amber") / "regions.yaml", tmp_path))
+    regions = tmp_path / "regions.yaml"
+    shutil.copy(face_folder("amber") / "regions.yaml", regions)
+    for place, said in (
+        (tmp_path / "cake.yaml", "cake.yaml: expected one of emotions.yaml"),
+        (tmp_path / "jaw.yaml", "nothing"),
+        (regions, "head.glb"),
+    ):
+        result = call("check", place, "--face", "amber")
+        assert result.exit_code == 1
+        assert said in result.stdout
+        assert "amber: good" in result.stdout, "one bad file does not keep the others from being checked"
+    regions.unlink()
+    assert "neither" in call("check", tmp_path).stdout
 
 
 def test_bench_prints_what_the_benchmarks_say(monkeypatch):

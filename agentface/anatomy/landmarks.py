@@ -26,7 +26,7 @@ class LandmarkRow(Table):
     """One landmark: the vertices whose mean it is, and its MPEG-4 feature point where it has one."""
 
     vertices: Annotated[list[int], Field(min_length=1)]
-    feature_point: str = ""
+    feature_point: Annotated[str, Field(pattern=r"^(\d{1,2}\.\d{1,2})?$")] = ""
 
 
 class FeaturePointsFile(Table):

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
 import numpy as np
 from pydantic import Field
@@ -18,11 +18,13 @@ from agentface.anatomy.muscle_set import MuscleSet
 from agentface.anatomy.regions import HALF_REGIONS, SUB_REGIONS, Regions
 from agentface.config import Document, Table
 from agentface.conventions import SIDES, Doubles, Floats, Indices
+from agentface.errors import did_you_mean
 from agentface.parameters import VECTOR_MUSCLES
 
 _Length = Annotated[float, Field(gt=0, le=5)]
 _Offset = Annotated[list[Annotated[float, Field(ge=-5, le=5)]], Field(min_length=3, max_length=3)]
 _MUSCLES = tuple(name.removesuffix("_l") for name in VECTOR_MUSCLES if name.endswith("_l"))
+_AT_THE_BONE = 0.5  # of the muscle's length, where the skin begins to follow it fully
 _MOVABLE = (*HALF_REGIONS, *SUB_REGIONS)
 
 
@@ -71,27 +73,37 @@ class MusclesFile(Table):
 def read_muscles(path: Path) -> MusclesFile:
     """The checked table; raises DataError naming unknown muscles, landmarks and regions, and missing muscles."""
     document = Document(path)
-    file = document.parse(MusclesFile)
-    for name in sorted(set(_MUSCLES) - file.muscles.keys()):
-        document.fault(("muscles",), f"an entry for {name}", "none")
-    for name, row in file.muscles.items():
-        where = ("muscles", name)
-        if name not in _MUSCLES:
-            document.fault(where, "the name of a vector muscle without side", name, f"known: {', '.join(_MUSCLES)}")
-        for key, anchor in (("origin", row.origin), ("insertion", row.insertion)):
-            if anchor.at not in (*LANDMARKS, *PAIRED_LANDMARKS):
-                known = ", ".join((*LANDMARKS, *PAIRED_LANDMARKS))
-                document.fault(
-                    (*where, key, "at"), "a landmark (paired ones without side)", anchor.at, f"known: {known}"
-                )
-        for key, names in (("regions", row.regions), ("not_regions", row.not_regions)):
-            for i, region in enumerate(names):
-                if region not in _MOVABLE:
-                    document.fault((*where, key, i), f"one of {', '.join(_MOVABLE)}", region)
-        if row.fall_finish <= row.fall_start:
-            document.fault((*where, "fall_finish"), f"more than fall_start, {row.fall_start}", str(row.fall_finish))
+    file = document.collect(MusclesFile)
+    rows = document.data.get("muscles") if isinstance(document.data, dict) else None
+    if isinstance(rows, dict):
+        for name in sorted(set(_MUSCLES) - rows.keys()):
+            document.fault(("muscles",), f"an entry for {name}", "none")
+        for name, row in rows.items():
+            if name not in _MUSCLES:
+                hint = did_you_mean(name, _MUSCLES)
+                document.fault(("muscles", name), "the name of a vector muscle without side", str(name), hint)
+            if isinstance(row, dict):
+                _check_row(document, name, row)
     document.check()
+    assert file is not None, "a document without faults is parsed"  # noqa: S101 - for the type checker
     return file
+
+
+def _check_row(document: Document, name: str, row: dict[str, Any]) -> None:
+    """What one row names and how its numbers fit together; their form is the model's concern."""
+    where, landmarks = ("muscles", name), (*LANDMARKS, *PAIRED_LANDMARKS)
+    for key in ("origin", "insertion"):
+        at = row[key].get("at") if isinstance(row.get(key), dict) else None
+        if isinstance(at, str) and at not in landmarks:
+            hint = did_you_mean(at, landmarks)
+            document.fault((*where, key, "at"), "a landmark (paired ones without side)", at, hint)
+    for key in ("regions", "not_regions"):
+        for i, region in enumerate(row[key] if isinstance(row.get(key), list) else []):
+            if region not in _MOVABLE:
+                document.fault((*where, key, i), f"one of {', '.join(_MOVABLE)}", str(region))
+    start, finish = (row.get(key) for key in ("fall_start", "fall_finish"))
+    if isinstance(start, (int, float)) and isinstance(finish, (int, float)) and finish <= start:
+        document.fault((*where, "fall_finish"), f"more than fall_start, {start}", str(finish))
 
 
 def place_muscles(
@@ -99,19 +111,37 @@ def place_muscles(
 ) -> MuscleSet:
     """The muscles of a face in metres, in the order of ``VECTOR_MUSCLES``."""
     unit = landmarks.eye_separation
-    borders = _Borders(regions, vertices, triangles)
     rows = [(file.muscles[name[:-2]], name[-1]) for name in VECTOR_MUSCLES]
+    origin = np.array([anchor_point(row.origin, side, landmarks) for row, side in rows])
+    insertion = np.array([anchor_point(row.insertion, side, landmarks) for row, side in rows])
+    reach = border_weights(file, landmarks, regions, vertices, triangles)
     return MuscleSet(
         names=VECTOR_MUSCLES,
-        origin=np.array([anchor_point(row.origin, side, landmarks) for row, side in rows]),
-        insertion=np.array([anchor_point(row.insertion, side, landmarks) for row, side in rows]),
+        origin=origin,
+        insertion=insertion,
         zone=np.array([math.radians(row.zone_deg) for row, _ in rows]),
         fall_start=np.array([unit * row.fall_start for row, _ in rows]),
         fall_finish=np.array([unit * row.fall_finish for row, _ in rows]),
         elasticity=np.array([unit * row.elasticity for row, _ in rows]),
-        reach=np.stack([borders.reach(row, unit) for row, _ in rows]),
+        reach=reach * off_the_bone(vertices, origin, insertion),
         falloff=file.falloff,
     )
+
+
+def border_weights(
+    file: MusclesFile, landmarks: Landmarks, regions: Regions, vertices: Floats, triangles: Indices
+) -> Floats:
+    """``(M, V)`` weights of the muscles in the order of ``VECTOR_MUSCLES``: what each may move, faded at the border."""
+    borders = _Borders(regions, vertices, triangles)
+    return np.stack([borders.reach(file.muscles[name[:-2]], landmarks.eye_separation) for name in VECTOR_MUSCLES])
+
+
+def off_the_bone(vertices: Floats | Doubles, origin: Doubles, insertion: Doubles) -> Floats:
+    """``(M, V)`` weights: skin over a muscle's attachment is not drawn into its apex, where it would pinch."""
+    length = np.linalg.norm(insertion - origin, axis=1)
+    distance = np.linalg.norm(vertices[None].astype(np.float32) - origin[:, None].astype(np.float32), axis=2)
+    t = np.clip(distance / (_AT_THE_BONE * length[:, None]), 0.0, 1.0)
+    return (t * t * (3.0 - 2.0 * t)).astype(np.float32)
 
 
 def anchor_point(anchor: Anchor, side: str, landmarks: Landmarks) -> Doubles:

@@ -12,10 +12,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from agentface.anatomy.model import HeadModel
-from agentface.anatomy.muscles import Anchor, MuscleRow, MusclesFile, anchor_point, place_muscles
+from agentface.anatomy.muscles import Anchor, MuscleRow, MusclesFile, anchor_point, border_weights, off_the_bone
 from agentface.calibration.action_units import ActionUnit
 from agentface.calibration.field import ROWS, displacements
 from agentface.conventions import SIDES, Doubles, Indices
+from agentface.parameters import VECTOR_MUSCLES
 
 _ORIGIN_WITHIN = 0.40
 _INSERTION_WITHIN = 0.25
@@ -56,9 +57,9 @@ class Fitter:
     def __init__(self, model: HeadModel, anatomy: MusclesFile, group: Group) -> None:
         self.model, self.anatomy, self.group = model, anatomy, group
         self.unit = model.landmarks.eye_separation
-        placed = place_muscles(anatomy, model.landmarks, model.regions, model.vertices, model.triangles)
+        weights = border_weights(anatomy, model.landmarks, model.regions, model.vertices, model.triangles)
         names = [f"{name}_{side}" for name in group.muscles for side in SIDES]
-        self._reach_all = np.stack([placed.reach[placed.index(name)] for name in names]).astype(np.float64)
+        self._reach_all = weights[[VECTOR_MUSCLES.index(name) for name in names]].astype(np.float64)
         half = np.flatnonzero((model.vertices[:, 0] > -1e-6) & (self._touched() > 0)).astype(np.int32)
         self._rest = model.vertices[half].astype(np.float64)
         self._reach = np.ascontiguousarray(self._reach_all[:, half])
@@ -110,8 +111,9 @@ class Fitter:
     def residuals(self, values: Doubles) -> Doubles:
         """Displacements, directions and stretching against the artists', and a mild pull to the anatomy."""
         rows, parts = self.rows(values), []
+        reach = self._reach * off_the_bone(self._rest, rows[:, :3], rows[:, 3:6])
         for target, contraction in zip(self._targets, self._contractions, strict=True):
-            moved = displacements(self._rest, rows, self._reach, contraction)
+            moved = displacements(self._rest, rows, reach, contraction)
             size = np.linalg.norm(target, axis=1, keepdims=True)
             peak = size.max()
             inside = size[:, 0] > 0.25 * peak

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import click
 
-from agentface.errors import DataError, Fault, UnknownNameError
+from agentface.errors import DataError, Fault
 
 _Reader = Callable[[Path], object]
 
@@ -30,9 +30,12 @@ def check(*, files: tuple[Path, ...], face: str | None, deformer: str) -> None:
     for place in places:
         found = list(dict.fromkeys(_faults(place)))
         faults += found
-        click.echo(f"{place}: {len(found)} faults" if found else f"{place}: good")
+        plural = "" if len(found) == 1 else "s"
+        click.echo(f"{place}: {len(found)} fault{plural}" if found else f"{place}: good")
+        for fault in found:
+            click.echo(f"  {fault}")
     if faults:
-        raise DataError(faults)
+        raise SystemExit(1)
 
 
 def _shipped() -> list[Path]:
@@ -58,7 +61,7 @@ def _faults(place: Path) -> list[Fault]:
 def _faults_of_file(path: Path) -> list[Fault]:
     readers = _rule_readers() | _face_readers()
     if path.name not in readers:
-        raise UnknownNameError("data file", path.name, tuple(readers))
+        return [Fault(path, None, "", f"one of {', '.join(readers)}", path.name)]
     return _faults_of(lambda: readers[path.name](path))
 
 

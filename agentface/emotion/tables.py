@@ -16,7 +16,7 @@ from pydantic import AfterValidator, BeforeValidator, Field
 from agentface.config import Document, Model, Table
 from agentface.emotion.sets import CONTRACTION_SETS, INTENSITY_SETS, ContractionSet, IntensitySet
 from agentface.emotion.state import EMOTIONS, canonical
-from agentface.errors import DataError, UnknownNameError, did_you_mean
+from agentface.errors import UnknownNameError, did_you_mean
 from agentface.parameters import MUSCLES
 
 STRONGER, REST = "stronger", "rest"
@@ -135,7 +135,7 @@ class BlendsFile(Table):
 def load_emotions(path: Path) -> EmotionsFile:
     """The single expressions at ``path``; raises DataError with every fault found."""
     document = Document(path)
-    file = _parse(document, EmotionsFile)
+    file = document.collect(EmotionsFile)
     columns = _at(document.data, "columns")
     if columns is not None and columns != list(INTENSITY_SETS):
         document.fault(("columns",), f"[{', '.join(INTENSITY_SETS)}]", str(columns))
@@ -145,7 +145,7 @@ def load_emotions(path: Path) -> EmotionsFile:
 def load_blends(path: Path) -> BlendsFile:
     """The blends at ``path``; raises DataError with every fault found."""
     document = Document(path)
-    file = _parse(document, BlendsFile)
+    file = document.collect(BlendsFile)
     _check_groups(document)
     _check_pairs(document)
     return _checked(document, file)
@@ -215,14 +215,6 @@ def _check_donors(document: Document, key: str, pair: tuple[str, ...], blend: An
 
 def _at(data: Any, key: str) -> Any:
     return data.get(key) if isinstance(data, dict) else None
-
-
-def _parse(document: Document, model: type[Model]) -> Model | None:
-    # Faults of single values stay in the document, to be raised together with those that need several values.
-    try:
-        return document.parse(model)
-    except DataError:
-        return None
 
 
 def _checked(document: Document, file: Model | None) -> Model:

@@ -59,9 +59,13 @@ def test_all_faults_of_the_muscles_at_once(face):
     edit(path, "  risorius:", "  risoriusx:")
     edit(path, "at: brow_inner", "at: elbow")
     edit(path, "[upper_face]", "[upper_farce]")
+    edit(path, "zone_deg: ", "zone_deg: .nan  #")
+    edit(path, "falloff: smooth", "falloff: smooth\nfalloff: waters")
     where = [fault.where for fault in faults_of(face)]
     assert "muscles.risoriusx" in where
     assert "muscles" in where  # risorius is missing
+    assert "muscles.frontalis_medialis.zone_deg" in where
+    assert "falloff" in where
     assert "muscles.frontalis_medialis.insertion.at" in where
     assert "muscles.frontalis_medialis.regions.0" in where
 

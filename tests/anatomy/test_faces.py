@@ -145,3 +145,26 @@ def test_the_glb_header_is_right():
     magic, version, length, chunk, kind = struct.unpack_from("<4sIII4s", content)
     assert (magic, version, length, kind) == (b"glTF", 2, len(content), b"JSON")
     assert {mesh["name"] for mesh in json.loads(content[20 : 20 + chunk])["meshes"]} == MESHES
+
+
+def test_muscles_fade_out_at_borders_and_over_the_bone(model):
+    muscles = model.muscles
+    ends = np.concatenate([model.triangles[:, [0, 1]], model.triangles[:, [1, 2]]])
+    lengths = np.linalg.norm(model.vertices[ends[:, 0]] - model.vertices[ends[:, 1]], axis=1)
+    for row, reach in enumerate(muscles.reach):
+        steps = np.abs(np.diff(reach[ends], axis=1))[:, 0] / (lengths / model.landmarks.eye_separation)
+        assert steps.max() < 20, "no cliff: a border takes a twentieth of an eye separation at the least"
+        distance = np.linalg.norm(model.vertices - muscles.origin[row], axis=1)
+        length = np.linalg.norm(muscles.insertion[row] - muscles.origin[row])
+        assert reach[distance < 0.05 * length].max(initial=0.0) < 0.05
+
+
+def test_a_muscle_moves_only_its_regions(model):
+    file = model.muscles_file
+    for name, reach in zip(model.muscles.names, model.muscles.reach, strict=True):
+        row = file.muscles[name[:-2]]
+        allowed = model.regions.mask(row.regions)
+        if row.not_regions:
+            allowed &= ~model.regions.mask(row.not_regions)
+        assert reach[~allowed].max() == 0.0
+        assert reach[allowed].max() > 0.9

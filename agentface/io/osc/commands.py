@@ -93,7 +93,7 @@ def _muscle(arguments: Sequence[Any]) -> Command:
 def _gaze(arguments: Sequence[Any]) -> Command:
     _count(arguments, "yaw_deg pitch_deg [duration_s]", 2, 3)
     yaw, pitch = _checked("gaze", ("yaw", "pitch"), arguments)
-    times = dict(zip(("fade",), _durations(arguments[2:]), strict=False))
+    times = dict(zip(("fade",), _durations(arguments[2:], "duration_s"), strict=False))
     return Command(("gaze",), lambda face: face.set_gaze(yaw, pitch, **times))
 
 
@@ -108,8 +108,8 @@ def _blink(arguments: Sequence[Any]) -> Command:
     return Command(("blink",), lambda face: face.blink())
 
 
-def _durations(values: Sequence[Any]) -> list[float]:
-    return [check_duration(where, value) for where, value in zip(("duration_s", "hold_s"), values, strict=False)]
+def _durations(values: Sequence[Any], first: str = "fade_s") -> list[float]:
+    return [check_duration(where, value) for where, value in zip((first, "hold_s"), values, strict=False)]
 
 
 def _checked(kind: str, axes: Sequence[str], angles: Sequence[Any]) -> list[float]:
