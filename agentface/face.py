@@ -46,6 +46,7 @@ class Face:
         face: the name of a face, the path of its folder, or a model that is already loaded.
         deformer: ``geometric`` (Bui et al.).
         seed: of everything random in the motion; the same calls then give the same frames.
+        compiled: False for numpy instead of compiled kernels: one picture is there sooner, a frame takes far longer.
         clock: measures ``frame_ms``; the motion itself takes its time from ``step`` alone.
 
     A call changes where the face goes, ``step`` moves it there. Times are seconds; a fade of 0 is done at once.
@@ -64,6 +65,7 @@ class Face:
         deformer: str = "geometric",
         seed: int = 0,
         clock: Clock | None = None,
+        compiled: bool = True,
     ) -> None:
         check_deformer(deformer)
         self.model = face if isinstance(face, HeadModel) else load_model(face)
@@ -72,9 +74,9 @@ class Face:
         self.inputs: list[Callable[[], None]] = []
         """Called at the start of every step: where servers hand over what came in."""
         self._clock = clock or SystemClock()
-        self._inference = default_inference()
+        self._inference = default_inference(compiled=compiled)
         self._mixer = Mixer(self._inference)
-        self._deformer = _deformer(self.model)
+        self._deformer = _deformer(self.model, compiled=compiled)
         self._renderer: Renderer | None = None
         self._pose: FacePose | None = None
         self._geometry: FaceGeometry | None = None
@@ -267,7 +269,7 @@ def check_deformer(name: str) -> None:
         raise InvalidValueError("deformer", "geometric", name, "this version has no layered tissue yet")
 
 
-def _deformer(model: HeadModel) -> Deformer:
+def _deformer(model: HeadModel, *, compiled: bool) -> Deformer:
     from agentface.deform.pipeline import GeometricDeformer
 
-    return GeometricDeformer(model)
+    return GeometricDeformer(model, compiled=compiled)

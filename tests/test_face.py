@@ -204,3 +204,23 @@ def test_a_kept_pose_is_drawn_without_changing_the_face():
     np.testing.assert_array_equal(face.render((96, 64), pose=neutral), plain)
     np.testing.assert_array_equal(face.render((96, 64)), shown)
     assert (plain != shown).any()
+
+
+def test_without_the_compiler_the_face_is_the_same(model):
+    state = {"happiness": 0.7, "surprise": 0.4, "fear": 0.2}
+    one, other = Face(model), Face(model, compiled=False)
+    for face in (one, other):
+        face.set_emotion(state, fade=0.0)
+    np.testing.assert_allclose(one.geometry.vertices, other.geometry.vertices, atol=1e-6)
+    np.testing.assert_allclose(one.geometry.normals, other.geometry.normals, atol=2e-3)
+
+
+@pytest.mark.gl
+def test_a_picture_from_the_command_line_needs_no_compiler(tmp_path):
+    code = (
+        "import sys; from agentface.commands.render import render; import contextlib\n"
+        f"with contextlib.suppress(SystemExit): render(['--emotion', 'fear=1', '-o', {str(tmp_path / 'a.png')!r}])\n"
+        "print('numba' in sys.modules)"
+    )
+    said = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout
+    assert said.strip() == "False"

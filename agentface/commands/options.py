@@ -88,11 +88,11 @@ def face_options(command: _Command) -> _Command:
     return face(deformer(command))
 
 
-def make_face(face: str, deformer: str) -> Face:
-    """The face that ``--face`` and ``--deformer`` name."""
+def make_face(face: str, deformer: str, *, compiled: bool = True) -> Face:
+    """The face that ``--face`` and ``--deformer`` name; not ``compiled``, it is ready sooner and slow a frame."""
     from agentface.face import Face
 
-    return Face(face, deformer=deformer)
+    return Face(face, deformer=deformer, compiled=compiled)
 
 
 def write_json(file: str, content: dict[str, Any]) -> None:

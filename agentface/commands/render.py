@@ -57,7 +57,7 @@ def render(
 
     check_picture_name(output)
     check_writable(output)
-    shown = make_face(face, deformer)
+    shown = make_face(face, deformer, compiled=False)  # one frame does not pay for loading the compiler
     shown.set_emotion(emotions, fade=0.0)
     for name, contraction in muscles.items():
         shown.set_muscle(name, contraction, fade=0.0)

@@ -76,15 +76,16 @@ class Combiner:
         rest_vertices: float32 ``(V, 3)`` m.
         muscles: muscles whose ``reach`` has V columns.
         method: ``"parallel"``, ``"sequential"`` or ``"summed"``.
+        compiled: False for the numpy form, which starts at once and takes a hundred times as long a frame.
 
     Raises:
         InvalidValueError: when the vertices are not finite or do not match the muscles.
         UnknownNameError: for another method.
     """
 
-    def __init__(self, rest_vertices: Points, muscles: MuscleSet, method: Method = "parallel") -> None:
-        from agentface.deform import blocks, kernels
-
+    def __init__(
+        self, rest_vertices: Points, muscles: MuscleSet, method: Method = "parallel", *, compiled: bool = True
+    ) -> None:
         rest = check_vertices("rest_vertices", rest_vertices)
         if len(rest) != muscles.vertex_count:
             raise InvalidValueError("rest_vertices", f"the muscles' {muscles.vertex_count} vertices", len(rest))
@@ -93,6 +94,11 @@ class Combiner:
         self.muscles = muscles
         self.method = method
         self._rest = rest
+        self._compiled = compiled
+        if not compiled:
+            return
+        from agentface.deform import blocks, kernels
+
         self._blocks = blocks.pack(rest, muscles)
         count = len(muscles)
         self._step = STEP if method == "parallel" else math.inf
@@ -116,10 +122,22 @@ class Combiner:
             raise InvalidValueError("out", expected, f"{out.dtype} {out.shape}")
         if contractions.shape != (len(self.muscles),):
             raise InvalidValueError("contractions", f"shape {(len(self.muscles),)}", contractions.shape)
+        if not self._compiled:
+            self._apply_reference(np.asarray(contractions, dtype=np.float64), out)
+            return
         schedule = self._kernels.spread if self.method == "sequential" else self._kernels.slice_steps
         self._levels[:] = contractions
         bad = schedule(self._levels, self._step, self._parts)
         if bad >= 0:
-            name = self.muscles.names[bad]
-            raise InvalidValueError(f"contraction of {name}", "a number in 0..1", float(contractions[bad]))
+            raise self._refusal(bad, contractions)
         self._kernels.contract(self._rest, *self._blocks, self._parts, out)
+
+    def _apply_reference(self, contractions: Doubles, out: Floats) -> None:
+        bad = np.flatnonzero(~((contractions >= 0.0) & (contractions <= 1.0)))
+        if len(bad):
+            raise self._refusal(int(bad[0]), contractions)
+        out[:] = REFERENCE[self.method](self._rest, self.muscles, contractions)
+
+    def _refusal(self, muscle: int, contractions: Points) -> InvalidValueError:
+        name = self.muscles.names[muscle]
+        return InvalidValueError(f"contraction of {name}", "a number in 0..1", float(contractions[muscle]))

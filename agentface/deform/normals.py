@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -36,14 +37,13 @@ class NormalField:
     Args:
         triangles: ``(T, 3)`` vertex indices below ``vertex_count``.
         vertex_count: V.
+        compiled: False for the numpy form, which starts at once and is slower.
 
     Raises:
         InvalidValueError: for triangles of another shape, or that name a vertex that does not exist.
     """
 
-    def __init__(self, triangles: npt.NDArray[np.integer[Any]], vertex_count: int) -> None:
-        from agentface.deform import kernels
-
+    def __init__(self, triangles: npt.NDArray[np.integer[Any]], vertex_count: int, *, compiled: bool = True) -> None:
         if triangles.ndim != 2 or triangles.shape[1] != 3:
             raise InvalidValueError("triangles", "an array of shape (T, 3)", triangles.shape)
         if triangles.size and not 0 <= int(triangles.min()) <= int(triangles.max()) < vertex_count:
@@ -51,7 +51,11 @@ class NormalField:
             raise InvalidValueError("triangles", f"vertex indices in 0..{vertex_count - 1}", got)
         self._triangles: Indices = np.ascontiguousarray(triangles, dtype=np.int32)
         self._shape = (vertex_count, 3)
-        self._kernel = kernels.vertex_normals
+        self._kernel: Callable[[Floats, Indices, Floats], None] = _reference
+        if compiled:
+            from agentface.deform import kernels
+
+            self._kernel = kernels.vertex_normals
 
     def compute(self, vertices: Floats, out: Floats) -> None:
         """Writes the unit normals of ``vertices`` to ``out``, both float32 ``(V, 3)`` in C order.
@@ -63,3 +67,7 @@ class NormalField:
                 expected = f"float32 {self._shape} in C order"
                 raise InvalidValueError(name, expected, f"{array.dtype} {array.shape}")
         self._kernel(vertices, self._triangles, out)
+
+
+def _reference(vertices: Floats, triangles: Indices, out: Floats) -> None:
+    out[:] = vertex_normals(vertices, triangles)

@@ -26,14 +26,15 @@ class GeometricDeformer:
     """The muscle-based face of Bui, Heylen and Nijholt.
 
     Vector muscles first, combined as ``combine`` says, on the face at rest; then lips, lids and jaw, which carry
-    the displaced skin along; then the normals.
+    the displaced skin along; then the normals. ``compiled=False`` takes the numpy forms of the kernels, the same
+    to 1e-7 m: ready at once, slow a frame.
     """
 
-    def __init__(self, model: HeadModel, combine: Method = "parallel") -> None:
-        self._combiner = Combiner(model.vertices, model.muscles, combine)
+    def __init__(self, model: HeadModel, combine: Method = "parallel", *, compiled: bool = True) -> None:
+        self._combiner = Combiner(model.vertices, model.muscles, combine, compiled=compiled)
         self._lips, self._eyelids, self._jaw = Lips(model), Eyelids(model), Jaw(model)
         self._turns = PoseTransforms(model)
-        self._normals = NormalField(model.triangles, len(model.vertices))
+        self._normals = NormalField(model.triangles, len(model.vertices), compiled=compiled)
         first = indices_of(VECTOR_MUSCLES[0])[0]
         self._muscles = slice(first, first + len(VECTOR_MUSCLES))
         self.geometry = FaceGeometry.at_rest(model.vertices, model.vertices)

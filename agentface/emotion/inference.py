@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from functools import cache
 
 import numpy as np
@@ -19,16 +19,20 @@ State = EmotionState | Mapping[str, float]
 
 
 class Inference:
-    """Mamdani inference over a rule base, compiled.
+    """Mamdani inference over a rule base, compiled; with ``compiled=False`` in numpy: ready at once, slow a call.
 
     Deterministic, without memory, safe to share between threads. Where a state is asked for, a mapping from
     emotion names to intensities will do; a wrong one raises UnknownNameError or InvalidValueError.
     """
 
-    def __init__(self, rulebase: RuleBase) -> None:
+    def __init__(self, rulebase: RuleBase, *, compiled: bool = True) -> None:
+        self.rulebase = rulebase
+        self._places = np.array([(index, row) for row, muscle in enumerate(MUSCLES) for index in indices_of(muscle)])
+        self._infer: Callable[..., None] | None = None
+        if not compiled:
+            return
         from agentface.emotion.kernels import infer
 
-        self.rulebase = rulebase
         self._infer = infer
         modes = rulebase.modes
         rows = [(muscle, rules) for mode in modes for muscle, rules in mode.consequents.items()]
@@ -41,10 +45,12 @@ class Inference:
         for number, emotions in enumerate(MODES):
             mode_of[EMOTIONS.index(emotions[0]), EMOTIONS.index(emotions[-1])] = number
         self._compiled = (rulebase.gap, mode_of, first_row, muscle_of_row, tables)
-        self._places = np.array([(index, row) for row, muscle in enumerate(MUSCLES) for index in indices_of(muscle)])
 
     def contractions(self, state: State) -> Doubles:
         """The contraction of each muscle, ``(len(MUSCLES),)`` float64 in 0..1, in the order of ``MUSCLES``."""
+        if self._infer is None:
+            contractions = self.explain(state).contractions
+            return np.array([contractions.get(muscle, 0.0) for muscle in MUSCLES])
         out = np.empty(len(MUSCLES))
         self._infer(EmotionState.of(state).values, *self._compiled, SETS, out)
         return out
@@ -61,6 +67,6 @@ class Inference:
 
 
 @cache
-def default_inference() -> Inference:
-    """The inference over the rules that come with agentface, made once."""
-    return Inference(RuleBase.load())
+def default_inference(*, compiled: bool = True) -> Inference:
+    """The inference over the rules that come with agentface, made once; ``compiled`` as for :class:`Inference`."""
+    return Inference(RuleBase.load(), compiled=compiled)
