@@ -139,8 +139,8 @@ class Window:
             glfw.make_context_current(self.handle)
             glfw.swap_interval(1)
             context = moderngl.create_context(require=330)
+            screen = context.detect_framebuffer()  # before the renderer binds framebuffers of its own
             renderer = Renderer(self.controls.face.model, context=context)
-            screen = context.detect_framebuffer()
             before = self.clock()
             while not (self.controls.closing or glfw.window_should_close(self.handle)):
                 if each_frame is not None:
