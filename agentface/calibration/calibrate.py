@@ -44,11 +44,6 @@ def muscles_yaml(file: MusclesFile) -> str:
     return _TITLE + yaml.safe_dump(content, sort_keys=False, default_flow_style=None, width=118)
 
 
-def write_muscles(path: Path, file: MusclesFile) -> None:
-    """Write ``muscles.yaml``."""
-    path.write_text(muscles_yaml(file), encoding="utf-8")
-
-
 def table(models: list[HeadModel]) -> str:
     """The agreement of every action unit on every face, as a Markdown table."""
     units = load_action_units()

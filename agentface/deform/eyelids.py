@@ -11,8 +11,8 @@ from agentface.parameters import indices_of
 _EDGE_RING = 3
 _MEETING = 0.22  # where the closed lids meet, from the lower edge up, as a part of the opening
 _WIDEST = 0.27  # rad, how far the upper lid rises past neutral in the middle of the eye
-_SQUEEZE_UPPER, _SQUEEZE_LOWER = 0.22, 1.15
-_FOLLOW_UPPER, _FOLLOW_LOWER = 0.55, 0.25
+_SQUEEZE_UPPER, _SQUEEZE_LOWER = 0.22, 1.15  # how far a squeeze brings each lid towards where they meet
+_FOLLOW_UPPER, _FOLLOW_LOWER = 0.55, 0.25  # of the eye's pitch, which the lids follow
 _LID_HEIGHT = {"upper": 0.62, "lower": 0.60}  # rad above or below the edge over which the skin follows it
 
 

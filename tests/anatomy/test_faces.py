@@ -81,7 +81,7 @@ def test_no_triangle_is_flipped_or_degenerate(model):
         for (a, b), face in owner.items()
         if (b, a) in owner and smooth[face] and smooth[owner[b, a]] and unit[face] @ unit[owner[b, a]] < 0.0
     ]
-    assert len(folded) <= 12, f"{len(folded)} edges folded by more than 90 degrees"
+    assert not folded, f"{len(folded)} edges folded by more than 90 degrees"
 
 
 def test_lips_are_closed_at_rest(model):
@@ -96,8 +96,8 @@ def test_lips_are_closed_at_rest(model):
     upper = np.min([height(ring.upper) for ring in rings[:5]], axis=0)
     lower = np.max([height(ring.lower) for ring in rings[:5]], axis=0)
     gap_mm = 1e3 * (upper - lower)
-    assert gap_mm.max() < 0.6
-    assert gap_mm.min() > -0.6
+    assert gap_mm.max() < 0.25
+    assert gap_mm.min() > 0.0, "the lips touch, but do not run into each other"
 
 
 def test_rings_are_ordered_closed_and_symmetric(model):

@@ -32,3 +32,9 @@ def rules_folder(tmp_path: Path) -> Path:
     for name in ("emotions.yaml", "blends.yaml"):
         copyfile(rules_file(name), tmp_path / name)
     return tmp_path
+
+
+@pytest.fixture(scope="session")
+def gives_way() -> set[tuple[str, str]]:
+    """Emotions and muscles that relax again: lips pressed in held-back anger; fury opens the mouth."""
+    return {("anger", "orbicularis_oris_press"), ("anger", "mentalis")}
