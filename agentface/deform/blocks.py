@@ -9,8 +9,8 @@ import numpy.typing as npt
 
 from agentface.anatomy.muscle_set import MuscleSet
 from agentface.conventions import Doubles, Floats, Indices
-from agentface.deform.kernels import FIELDS, LANES
-from agentface.deform.simd import PART
+from agentface.deform.compiled.contraction import FIELDS, LANES
+from agentface.deform.compiled.simd import PART
 
 _MARGIN = 1e-6
 """m: more than single precision loses over a face."""

@@ -97,7 +97,8 @@ class Combiner:
         self._compiled = compiled
         if not compiled:
             return
-        from agentface.deform import blocks, kernels
+        from agentface.deform import blocks
+        from agentface.deform.compiled import contraction
 
         self._blocks = blocks.pack(rest, muscles)
         count = len(muscles)
@@ -105,7 +106,7 @@ class Combiner:
         shape = {"parallel": math.ceil(1.0 / STEP), "sequential": count, "summed": 1}[method]
         self._parts = np.zeros((shape, count), dtype=np.float32)
         self._levels = np.zeros(count, dtype=np.float64)
-        self._kernels = kernels
+        self._kernels = contraction
 
     def apply(self, contractions: Points, out: Floats) -> None:
         """Writes the moved vertices to ``out``; where no muscle acts they are the rest vertices, bit for bit.

@@ -53,9 +53,9 @@ class NormalField:
         self._shape = (vertex_count, 3)
         self._kernel: Callable[[Floats, Indices, Floats], None] = _reference
         if compiled:
-            from agentface.deform import kernels
+            from agentface.deform.compiled import normals
 
-            self._kernel = kernels.vertex_normals
+            self._kernel = normals.vertex_normals
 
     def compute(self, vertices: Floats, out: Floats) -> None:
         """Writes the unit normals of ``vertices`` to ``out``, both float32 ``(V, 3)`` in C order.

@@ -10,7 +10,7 @@ from hypothesis.extra.numpy import arrays
 from agentface.anatomy.muscle_set import FALLOFFS, MuscleSet
 from agentface.deform.blocks import pack, slacks
 from agentface.deform.combine import METHODS, REFERENCE, STEP, Combiner
-from agentface.deform.kernels import LANES
+from agentface.deform.compiled.contraction import LANES
 from agentface.deform.vector_muscle import pull
 from agentface.errors import InvalidValueError, UnknownNameError
 from tests.deform.rig import make_rig

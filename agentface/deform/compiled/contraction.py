@@ -1,8 +1,4 @@
-"""The compiled inner loops of deformation, single precision; numba compiles them once and keeps them on disk.
-
-Only imported where they run: importing numba takes half a second. Each has a numpy twin, its oracle in the tests:
-``contract`` has those of :mod:`agentface.deform.combine`, ``vertex_normals`` that of :mod:`agentface.deform.normals`.
-"""
+"""The vector muscles' loop, single precision; its numpy twins are in :mod:`agentface.deform.combine`."""
 
 from __future__ import annotations
 
@@ -13,7 +9,7 @@ from numba import njit
 
 from agentface.conventions import Doubles, Floats, Indices
 from agentface.deform.combine import NOTHING
-from agentface.deform.simd import (
+from agentface.deform.compiled.simd import (
     WIDTH,
     inverse_root,
     larger,
@@ -34,7 +30,6 @@ FIELDS = 12
 _F = np.float32
 _ZERO, _ONE = _F(0.0), _F(1.0)
 _MARGIN = _F(1e-5)  # m, wider than the rounding of a sum of displacements
-_SMALLEST = _F(1e-36)  # m^4, near the end of single precision
 # Keeps 1 / distance finite at a muscle's origin; its root, 1e-10 m, is far below single precision here.
 _TINY = _F(1e-20)
 # cos(pi/2 u) = (1 - u^2) (1 + Q1 u^2 + Q2 u^4 + Q3 u^6) on 0..1, exact at both ends, fitted to 6e-8.
@@ -182,28 +177,3 @@ def contract_block(
     store(lanes, 0, px)
     store(lanes, LANES, py)
     store(lanes, 2 * LANES, pz)
-
-
-@njit(cache=True, fastmath=True, error_model="numpy")
-def vertex_normals(vertices: Floats, triangles: Indices, out: Floats) -> None:
-    """Area-weighted unit normals of ``vertices (V, 3)``; a vertex without area gets zero."""
-    for vertex in range(out.shape[0]):
-        out[vertex, 0] = _ZERO
-        out[vertex, 1] = _ZERO
-        out[vertex, 2] = _ZERO
-    for triangle in range(triangles.shape[0]):
-        a, b, c = triangles[triangle, 0], triangles[triangle, 1], triangles[triangle, 2]
-        x, y, z = vertices[a, 0], vertices[a, 1], vertices[a, 2]
-        ux, uy, uz = vertices[b, 0] - x, vertices[b, 1] - y, vertices[b, 2] - z
-        vx, vy, vz = vertices[c, 0] - x, vertices[c, 1] - y, vertices[c, 2] - z
-        nx, ny, nz = uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx
-        for corner in (a, b, c):
-            out[corner, 0] += nx
-            out[corner, 1] += ny
-            out[corner, 2] += nz
-    for vertex in range(out.shape[0]):
-        square = out[vertex, 0] ** 2 + out[vertex, 1] ** 2 + out[vertex, 2] ** 2
-        scale = _ONE / math.sqrt(square) if square > _SMALLEST else _ZERO
-        out[vertex, 0] *= scale
-        out[vertex, 1] *= scale
-        out[vertex, 2] *= scale
