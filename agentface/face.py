@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cache
 from pathlib import Path
@@ -47,6 +47,7 @@ class Face:
         deformer: ``geometric`` (Bui et al.).
         seed: of everything random in the motion; the same calls then give the same frames.
         compiled: False for numpy instead of compiled kernels: one picture is there sooner, a frame takes far longer.
+        look: the name of a look of this face, or the path of its file; the face's own when None.
         clock: measures ``frame_ms``; the motion itself takes its time from ``step`` alone.
 
     A call changes where the face goes, ``step`` moves it there. Times are seconds; a fade of 0 is done at once.
@@ -66,6 +67,7 @@ class Face:
         seed: int = 0,
         clock: Clock | None = None,
         compiled: bool = True,
+        look: str | Path | None = None,
     ) -> None:
         check_deformer(deformer)
         self.model = face if isinstance(face, HeadModel) else load_model(face)
@@ -78,6 +80,7 @@ class Face:
         self._mixer = Mixer(self._inference)
         self._deformer = _deformer(self.model, compiled=compiled)
         self._renderer: Renderer | None = None
+        self._look = look
         self._pose: FacePose | None = None
         self._geometry: FaceGeometry | None = None
         self._frame_ms = 0.0
@@ -110,7 +113,7 @@ class Face:
         fade = check_duration("fade", fade)
         self._mixer.emotion.change(EmotionState().as_dict(), fade, None)
         self._mixer.muscles.release(None, fade)
-        self._mixer.gaze.turn((0.0, 0.0), fade)
+        self._mixer.gaze.turn((0.0, 0.0, 0.0), fade)
         self._mixer.head.turn((0.0, 0.0, 0.0), fade)
         self._touch()
 
@@ -132,7 +135,21 @@ class Face:
     def set_gaze(self, yaw_deg: float, pitch_deg: float, *, fade: float = 0.06) -> None:
         """Look ``yaw_deg`` to the person's left (-50..50) and ``pitch_deg`` up (-40..40); a saccade by default."""
         fade = check_duration("fade", fade)
-        self._mixer.gaze.turn((check_angle("gaze_yaw", yaw_deg), check_angle("gaze_pitch", pitch_deg)), fade)
+        self._mixer.gaze.turn((check_angle("gaze_yaw", yaw_deg), check_angle("gaze_pitch", pitch_deg), 0.0), fade)
+        self._touch()
+
+    def look_at(self, point: Sequence[float], *, fade: float = 0.06) -> None:
+        """Look at a point, each eye exactly: x, y, z in metres in the model's axes, where the head is not turned.
+
+        A point too far aside is looked at as far as the eyes turn. Raises InvalidValueError for a point that is not
+        in front of the eyes.
+        """
+        from agentface.deform.eyes import toward
+
+        fade = check_duration("fade", fade)
+        angles = zip(("gaze_yaw", "gaze_pitch", "gaze_vergence"), toward(self.model, point), strict=True)
+        known = [(parameter(name), angle) for name, angle in angles]
+        self._mixer.gaze.turn(tuple(min(max(angle, limits.low), limits.high) for limits, angle in known), fade)
         self._touch()
 
     def set_head(self, yaw_deg: float, pitch_deg: float, roll_deg: float = 0.0, *, fade: float = 0.4) -> None:
@@ -176,6 +193,20 @@ class Face:
         return self._mixer.emotion.target
 
     @property
+    def held(self) -> dict[str, float]:
+        """The muscles, sides apart, and the jaw that are set by hand, and the contraction that each goes to."""
+        return self._mixer.muscles.held
+
+    @property
+    def turned_deg(self) -> dict[str, float]:
+        """Where gaze and head go: ``gaze_yaw``, ``gaze_pitch``, ``head_yaw``, ``head_roll``, ... in degrees."""
+        return {
+            name: round(math.degrees(angle), 6)
+            for channel in (self._mixer.gaze, self._mixer.head)
+            for name, angle in channel.targets.items()
+        }
+
+    @property
     def pose(self) -> FacePose:
         """Every animation parameter as shown now."""
         if self._pose is None:
@@ -208,9 +239,10 @@ class Face:
         Raises GraphicsError where the machine has no OpenGL.
         """
         if self._renderer is None:
+            from agentface.view.look import load_look
             from agentface.view.renderer import Renderer
 
-            self._renderer = Renderer(self.model)
+            self._renderer = Renderer(self.model, load_look(self.model, self._look))
         geometry = self.geometry
         if pose is not None:
             self._geometry = None  # the deformer overwrites the arrays

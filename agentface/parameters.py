@@ -84,6 +84,8 @@ def _build() -> tuple[Parameter, ...]:
     ):
         limit = float(np.float32(math.radians(limit_deg)))  # what a pose gives back at its limit, it takes again
         rows.append((name, "gaze" if name.startswith("gaze") else "head", "rad", -limit, limit, text))
+    apart, together = (float(np.float32(math.radians(limit_deg))) for limit_deg in (-10, 25))
+    rows.append(("gaze_vergence", "gaze", "rad", apart, together, "each eye turns inward"))
     return tuple(Parameter(row[0], index, *row[1:]) for index, row in enumerate(rows))
 
 

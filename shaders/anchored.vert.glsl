@@ -10,6 +10,7 @@ in vec4 material;
 
 centroid out vec3 position, normal, rest_position;
 centroid out vec4 matter;
+centroid out vec2 within;
 
 void main() {
     vec3 mean = 0.25 * (skin_position(anchors.x) + skin_position(anchors.y) + skin_position(anchors.z) + skin_position(anchors.w));
@@ -18,5 +19,6 @@ void main() {
     normal = mat3(head) * facing;
     rest_position = rest;
     matter = material;
+    within = vec2(0.0);
     gl_Position = view_projection * placed;
 }

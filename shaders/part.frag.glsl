@@ -4,31 +4,60 @@
 #include "shading.glsl"
 #include "noise.glsl"
 centroid in vec3 position, normal, rest_position;
-centroid in vec4 matter;
+centroid in vec4 matter;   // tooth, gum, tongue, cloth
+centroid in vec2 within;   // on a tooth: across -1..1, up 0 (edge)..1 (gum); on cloth: turn, metres from the collar
 out vec4 colour;
 
 uniform float mouth_front;  // z of the lips at rest
 uniform float mouth_light;  // how much light the lips let in
 uniform vec3 cloth;
 
+vec3 knitted(vec3 n, vec3 view) {
+    const float RIBBED = 0.014;  // metres of the collar
+    float ribbed = smoothstep(RIBBED, RIBBED - 0.001, within.y), seam = exp(-pow((within.y - RIBBED) / 0.0008, 2.0));
+    float rib = abs(2.0 * fract(44.0 * within.x) - 1.0);
+    vec4 folds = noise(rest_position * vec3(3.1, 1.7, 3.1));
+    n = normalize(n + 0.30 * (folds.rgb - 0.5) * smoothstep(0.01, 0.06, within.y));
+    float worn = mix(0.92 + 0.16 * noise(rest_position * 90.0).b, 0.70 + 0.45 * rib, ribbed) * (1.0 - 0.45 * seam);
+    vec3 light = hemisphere(n);
+    for (int i = 0; i < LIGHTS; i++) light += light_colour[i].rgb * wrapped(vec3(dot(n, light_direction[i].xyz)), vec3(0.12));
+    float fuzz = pow(1.0 - clamp(dot(n, view), 0.0, 1.0), 3.0);
+    return cloth * worn * light * (1.0 + 1.2 * fuzz) * smoothstep(-0.004, 0.012, within.y + 0.006);
+}
+
+vec3 enamel() {
+    float up = within.y, aside = within.x * within.x;
+    vec3 c = mix(vec3(0.87, 0.79, 0.68), vec3(0.80, 0.67, 0.46), smoothstep(0.35, 1.0, up));
+    c = mix(c, vec3(0.66, 0.65, 0.60), 0.5 * smoothstep(0.18, 0.02, up));   // the edge lets light through
+    c *= mix(1.0, 0.93, smoothstep(0.008, 0.013, abs(rest_position.x)) * smoothstep(0.020, 0.014, abs(rest_position.x)));
+    c *= mix(vec3(1.0), vec3(0.42, 0.32, 0.26), smoothstep(0.55, 1.02, aside));   // between the teeth
+    return c * mix(vec3(1.0), vec3(0.72, 0.50, 0.42), smoothstep(0.72, 1.0, up));  // under the gum
+}
+
 void main() {
     vec3 view = normalize(eye_point.xyz - position), n = normalize(normal);
     n = dot(n, view) < 0.0 ? -n : n;
-    float inside = clamp(matter.x + matter.y + matter.z, 0.0, 1.0);
-    vec4 fine = noise(rest_position * 60.0);
-    vec3 albedo = matter.x * vec3(0.68, 0.60, 0.48) + matter.y * vec3(0.46, 0.16, 0.15) + matter.z * vec3(0.46, 0.15, 0.14);
-    albedo = (albedo + matter.w * cloth) * (0.9 + 0.2 * fine.r);
-    float rough = mix(0.8, mix(0.40, 0.26, matter.x), inside), f0 = mix(0.02, 0.04, inside);
-    float depth = mix(1.0, smoothstep(-0.050, 0.004, rest_position.z - mouth_front), inside);
-    float reach = mix(1.0, mix(0.10, 0.85, depth) * mouth_light, inside);
+    if (matter.w > 0.5) {
+        colour = vec4(knitted(n, view), 1.0);
+        return;
+    }
+    vec4 fine = noise(rest_position * 60.0), grain = noise(rest_position * 210.0);
+    float tongue = matter.z, groove = exp(-pow(rest_position.x / 0.0016, 2.0));
+    n = normalize(n + (0.05 * matter.x + 0.12 * matter.y + 0.30 * tongue) * (grain.bag - 0.5));
+    vec3 albedo = matter.x * enamel() + matter.y * vec3(0.52, 0.20, 0.19) + tongue * vec3(0.54, 0.20, 0.19) * (1.0 - 0.25 * groove);
+    albedo *= mix(0.88 + 0.24 * fine.r, 0.97 + 0.06 * fine.r, matter.x);
+    float rough = mix(0.34, 0.20, matter.x);
+    float depth = smoothstep(-0.046, 0.002, rest_position.z - mouth_front);
+    float reach = mix(0.08, 1.25, depth * depth) * mouth_light;
     vec3 light = hemisphere(n), gloss = vec3(0.0);
     float n_v = max(dot(n, view), 0.02);
-    for (int i = 0; i < LIGHTS; i++) {
-        if (i > 1 && inside > 0.5) break;
+    for (int i = 0; i < 2; i++) {
         vec3 l = light_direction[i].xyz, h = normalize(l + view);
         float n_l = max(dot(n, l), 0.0);
-        light += light_colour[i].rgb * mix(0.05, 0.75, 1.0) * wrapped(vec3(dot(n, l)), vec3(0.35 * inside + 0.05));
-        gloss += light_colour[i].rgb * ggx(max(dot(n, h), 0.0), rough) * visibility(n_l, n_v, rough) * fresnel(f0, max(dot(view, h), 0.0)) * n_l * PI;
+        light += light_colour[i].rgb * wrapped(vec3(dot(n, l)), mix(vec3(0.40, 0.28, 0.22), vec3(0.42), matter.x));
+        gloss += light_colour[i].rgb * ggx(max(dot(n, h), 0.0), rough) * visibility(n_l, n_v, rough) * fresnel(0.042, max(dot(view, h), 0.0)) * n_l * PI;
     }
-    colour = vec4((albedo * light + gloss) * reach, 1.0);
+    gloss += hemisphere(reflect(-view, n)) * fresnel(0.042, n_v) * 0.6;
+    const vec3 WARM = vec3(1.04, 0.96, 0.88);  // light that the lips and cheeks let through
+    colour = vec4((albedo * light * WARM + gloss) * reach, 1.0);
 }

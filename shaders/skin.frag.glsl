@@ -3,9 +3,11 @@
 #include "shading.glsl"
 #include "noise.glsl"
 #include "shadow.glsl"
+#include "wrinkles.glsl"
 centroid in vec3 position, normal, blurred_normal, rest_position;
 centroid in vec4 matter, tint;
 centroid in float open_sky, rest_key;
+centroid in vec2 atlas;
 out vec4 colour;
 
 uniform vec3 skin_tone;
@@ -15,9 +17,18 @@ uniform float shine;
 uniform float mouth_front;  // z of the lips at rest
 uniform float mouth_light;  // how much light the lips let in
 
+const float CREASE_SHADE = 0.5;  // of the surroundings' light that the bottom of a crease misses
+
 void main() {
     vec3 view = normalize(eye_point.xyz - position);
     vec3 n = normalize(normal), soft = normalize(blurred_normal);
+    float crease = 0.0;
+    if (wrinkled) {
+        vec4 raised = wrinkled_normal(n, position, atlas);
+        soft = normalize(soft + 0.5 * (raised.xyz - n));
+        n = raised.xyz;
+        crease = raised.w;
+    }
     float lip = smoothstep(0.30, 0.75, matter.x), mouth = smoothstep(0.35, 0.9, matter.y), wet = smoothstep(0.2, 0.95, matter.z);
     vec4 coarse = noise(rest_position * 9.0), fine = noise(rest_position * 37.0);
     float mottle = coarse.r - 0.5, grain = fine.g - 0.5;
@@ -34,6 +45,7 @@ void main() {
 
     float sky_light = max(open_sky, max(mix(0.40, 0.80, mouth_light) * lip, 0.32 * mouth));
     sky_light *= mix(1.0, 0.25 + 0.55 * smoothstep(-0.05, -0.005, rest_position.z - mouth_front), mouth);
+    sky_light *= 1.0 - CREASE_SHADE * crease;
     vec3 occlusion = pow(vec3(sky_light), vec3(0.72, 0.95, 1.05));
     vec3 wrap = vec3(0.36, 0.20, 0.14) * (1.0 - 0.6 * mouth);
     vec3 bump = normalize(n + 0.10 * (1.0 - wet) * (1.0 - mouth) * (fine.bar - 0.5));

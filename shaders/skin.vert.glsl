@@ -1,6 +1,7 @@
 #version 330 core
 #include "frame.glsl"
 #include "surface.glsl"
+#include "atlas.glsl"
 in ivec2 ends;         // the skin vertices between which this one lies
 in vec3 rest;          // at rest, metres
 in vec3 soft_normal;   // at rest, blurred
@@ -13,6 +14,7 @@ in float lit_at_rest;  // how much of the key light arrives at rest
 centroid out vec3 position, normal, blurred_normal, rest_position;
 centroid out vec4 matter, tint;
 centroid out float open_sky, rest_key;
+centroid out vec2 atlas;
 
 const float MOUTH_BEHIND = 0.007;  // metres
 
@@ -23,6 +25,7 @@ void main() {
     normal = mat3(head) * n;
     blurred_normal = mat3(head) * (soft_normal + 0.6 * (n - rest_normal));
     rest_position = rest;
+    atlas = atlas_place(rest);
     matter = material;
     tint = complexion;
     open_sky = ambient;

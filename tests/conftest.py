@@ -5,3 +5,7 @@ from hypothesis import settings
 # The same examples in every run, and no verdict by the clock: a busy machine fails nothing.
 settings.register_profile("agentface", deadline=None, derandomize=True)
 settings.load_profile("agentface")
+
+
+def pytest_addoption(parser):
+    parser.addoption("--regen-goldens", action="store_true", help="Store what is drawn and computed now as right.")

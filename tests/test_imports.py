@@ -19,9 +19,9 @@ LAYERS = (
     ("anatomy",),
     ("emotion", "motion", "deform", "tissue", "mpeg4"),
     ("calibration", "bench"),
-    ("figures",),
     ("face",),
     ("io", "view"),
+    ("figures",),
     ("commands",),
     ("cli",),
     ("__main__",),
@@ -37,6 +37,7 @@ EXCEPTIONS = {
 OWNERS = {
     "moderngl": {"view"},
     "glfw": {"view"},
+    "imgui_bundle": {"view"},
     "socket": {"io"},
     "pythonosc": {"io"},
     "av": {"io"},

@@ -12,9 +12,12 @@ from pydantic import Field
 
 from agentface.anatomy.glb import MeshArrays, Shape, read_glb
 from agentface.anatomy.landmarks import Landmarks, load_landmarks
+from agentface.anatomy.lids import LidMotion
 from agentface.anatomy.muscle_set import MuscleSet
 from agentface.anatomy.muscles import MusclesFile, place_muscles, read_muscles
+from agentface.anatomy.orbicularis_oris import LipsMotion
 from agentface.anatomy.regions import Regions, load_regions
+from agentface.anatomy.wrinkles import PlacedTrain, WrinklesFile, place_trains, read_wrinkles
 from agentface.config import Document, Table, load
 from agentface.conventions import SIDES, Floats, Indices
 from agentface.errors import DataError, Fault
@@ -24,13 +27,18 @@ _Point = Annotated[list[float], Field(min_length=3, max_length=3)]
 PARTS = ("teeth_upper", "teeth_lower", "tongue", "eye_l", "eye_r")
 
 
-class EyesFile(Table):
+class EyeHole(Table):
+    """How far the eyes turn: half the width and half the height of the elliptic eye hole."""
+
+    yaw_limit_deg: Annotated[float, Field(gt=0, le=60)]
+    pitch_limit_deg: Annotated[float, Field(gt=0, le=60)]
+
+
+class EyesFile(EyeHole):
     """``eyes.yaml``: the left eyeball in metres, and how far the eyes turn."""
 
     centre: _Point
     radius: Annotated[float, Field(gt=0)]
-    yaw_limit_deg: Annotated[float, Field(gt=0, le=60)]
-    pitch_limit_deg: Annotated[float, Field(gt=0, le=60)]
 
 
 class JawFile(Table):
@@ -47,14 +55,14 @@ class RingHalves(Table):
     lower: list[int]
 
 
-class LipsFile(Table):
-    """``lips.yaml``: rings round the mouth, from the seam outward."""
+class LipsFile(LipsMotion):
+    """``lips.yaml``: rings round the mouth, from the seam outward, and the ring muscle of the mouth."""
 
     rings: Annotated[list[RingHalves], Field(min_length=1)]
 
 
-class EyelidsFile(Table):
-    """``eyelids.yaml``: rings round each eye, from the lid's inner margin outward."""
+class EyelidsFile(LidMotion):
+    """``eyelids.yaml``: rings round each eye, from the lid's inner margin outward, and how the lids move."""
 
     rings: dict[str, Annotated[list[RingHalves], Field(min_length=1)]]
 
@@ -81,6 +89,7 @@ class HeadModel:
         landmarks: named points.
         eyes, jaw, lips, eyelids: the tables of the same names.
         muscles_file: the table of the vector muscles.
+        wrinkles_file: the table of the trains of wrinkles that follow no single vector muscle.
     """
 
     name: str
@@ -100,11 +109,19 @@ class HeadModel:
     lips: LipsFile
     eyelids: EyelidsFile
     muscles_file: MusclesFile
+    wrinkles_file: WrinklesFile
 
     @cached_property
     def muscles(self) -> MuscleSet:
         """The vector muscles in metres."""
         return place_muscles(self.muscles_file, self.landmarks, self.regions, self.vertices, self.triangles)
+
+    @cached_property
+    def trains(self) -> tuple[PlacedTrain, ...]:
+        """The trains of wrinkles; none rises on the lips, on a lid's wet margin or in the mouth."""
+        smooth = 1.0 - np.clip(2.0 * self.material[:, :3].max(axis=1), 0.0, 1.0)
+        return place_trains(self.muscles, self.muscles_file, self.wrinkles_file, self.landmarks, self.regions,
+                            self.vertices, self.triangles, smooth)  # fmt: skip
 
     def eye_centre(self, side: str) -> Floats:
         """The centre ``(3,)`` m of the eyeball of side ``l`` or ``r``."""
@@ -140,6 +157,7 @@ def load_model(face: str | Path = DEFAULT_FACE, muscles: MusclesFile | None = No
         lips=load_rings(folder / "lips.yaml", LipsFile, len(vertices)),
         eyelids=load_rings(folder / "eyelids.yaml", EyelidsFile, len(vertices)),
         muscles_file=muscles or read_muscles(folder / "muscles.yaml"),
+        wrinkles_file=read_wrinkles(folder / "wrinkles.yaml"),
     )
 
 

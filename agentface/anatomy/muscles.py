@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Annotated, Any, Literal
 
 import numpy as np
-from pydantic import Field
+from pydantic import ConfigDict, Field
 
 from agentface.anatomy.landmarks import LANDMARKS, PAIRED_LANDMARKS, Landmarks
 from agentface.anatomy.muscle_set import MuscleSet
@@ -42,7 +42,15 @@ class Wrinkles(Table):
     height: Annotated[float, Field(ge=0, le=0.1)]
 
 
-class MuscleRow(Table):
+class Territory(Table):
+    """What of the skin something works on: ``regions`` without ``not_regions``, fading over ``fade`` at the border."""
+
+    regions: Annotated[list[str], Field(min_length=1)]
+    not_regions: list[str] = []
+    fade: Annotated[float, Field(ge=0, le=1)] = 0.12
+
+
+class MuscleRow(Territory):
     """One pair of vector muscles.
 
     ``origin`` is the bone end, ``insertion`` the skin end; ``zone_deg`` half the angle of the zone of influence;
@@ -57,9 +65,6 @@ class MuscleRow(Table):
     fall_start: _Length
     fall_finish: _Length
     elasticity: Annotated[float, Field(ge=0, le=1)]
-    regions: Annotated[list[str], Field(min_length=1)]
-    not_regions: list[str] = []
-    fade: Annotated[float, Field(ge=0, le=1)] = 0.12
     wrinkles: Wrinkles | None = None
 
 
@@ -70,10 +75,16 @@ class MusclesFile(Table):
     muscles: dict[str, MuscleRow]
 
 
+class AnatomyFile(MusclesFile):
+    """``anatomy.yaml``: the anatomist's muscles, beside sections for the parts that only the build of faces reads."""
+
+    model_config = ConfigDict(extra="ignore")
+
+
 def read_muscles(path: Path) -> MusclesFile:
     """The checked table; raises DataError naming unknown muscles, landmarks and regions, and missing muscles."""
     document = Document(path)
-    file = document.collect(MusclesFile)
+    file = document.collect(AnatomyFile if path.name == "anatomy.yaml" else MusclesFile)
     rows = document.data.get("muscles") if isinstance(document.data, dict) else None
     if isinstance(rows, dict):
         for name in sorted(set(_MUSCLES) - rows.keys()):
@@ -86,7 +97,7 @@ def read_muscles(path: Path) -> MusclesFile:
                 _check_row(document, name, row)
     document.check()
     assert file is not None, "a document without faults is parsed"  # noqa: S101 - for the type checker
-    return file
+    return MusclesFile(falloff=file.falloff, muscles=file.muscles)
 
 
 def _check_row(document: Document, name: str, row: dict[str, Any]) -> None:
@@ -132,7 +143,7 @@ def border_weights(
     file: MusclesFile, landmarks: Landmarks, regions: Regions, vertices: Floats, triangles: Indices
 ) -> Floats:
     """``(M, V)`` weights of the muscles in the order of ``VECTOR_MUSCLES``: what each may move, faded at the border."""
-    borders = _Borders(regions, vertices, triangles)
+    borders = Borders(regions, vertices, triangles)
     return np.stack([borders.reach(file.muscles[name[:-2]], landmarks.eye_separation) for name in VECTOR_MUSCLES])
 
 
@@ -151,8 +162,8 @@ def anchor_point(anchor: Anchor, side: str, landmarks: Landmarks) -> Doubles:
     return np.asarray(landmarks[name] + landmarks.eye_separation * mirrored * anchor.offset, np.float64)
 
 
-class _Borders:
-    """Distances along the skin to the border of what a muscle may move."""
+class Borders:
+    """Distances along the skin to the border of a territory."""
 
     def __init__(self, regions: Regions, vertices: Floats, triangles: Indices) -> None:
         self._regions = regions
@@ -163,8 +174,8 @@ class _Borders:
         self._length = np.linalg.norm(vertices[self._from] - vertices[to], axis=1)
         self._known: dict[tuple[str, ...], Floats] = {}
 
-    def reach(self, row: MuscleRow, unit: float) -> Floats:
-        """``(V,)`` weights: 0 outside the muscle's regions, rising to 1 over ``fade`` inside."""
+    def reach(self, row: Territory, unit: float) -> Floats:
+        """``(V,)`` weights: 0 outside the territory, rising to 1 over ``fade`` inside."""
         key = (*sorted(row.regions), "|", *sorted(row.not_regions))
         if key not in self._known:
             inside = self._regions.mask(row.regions)

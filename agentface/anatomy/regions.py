@@ -20,15 +20,21 @@ REGIONS: tuple[str, ...] = (*(f"{name}_{side}" for side in ("r", "l") for name i
 SUB_REGIONS = {"lower_lip": "lower_face", "upper_lip": "middle_face", "eyebrow": "upper_face"}
 """Each sub-region and the region that it is part of."""
 
+LIMITED: tuple[str, ...] = (*HALF_REGIONS, *SUB_REGIONS, REST)
+"""What has a limit of its own: regions and sub-regions without their side, and the rest of the head."""
+
 _Range = Annotated[list[int], Field(min_length=2, max_length=2)]
+Limits = dict[str, Annotated[float, Field(gt=0, le=1)]]
+"""How far muscles may move the skin of each region of ``LIMITED``, in eye separations."""
 
 
 class RegionsFile(Table):
-    """``regions.yaml``: the first and the last vertex of each region and sub-region, both included."""
+    """``regions.yaml``: the first and the last vertex of each region and sub-region, both included, and the limits."""
 
     vertices: int
     regions: dict[str, _Range]
     sub_regions: dict[str, _Range]
+    limits: Limits
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,11 +42,13 @@ class Regions:
     """Which region each vertex is in.
 
     ``region_of`` is ``(V,)`` uint8, an index into ``REGIONS``; ``ranges`` maps the name of a region or a
-    sub-region (with its side) to ``(first, last)``, both included.
+    sub-region (with its side) to ``(first, last)``, both included; ``limits`` says how far muscles may move each
+    of ``LIMITED``, in eye separations.
     """
 
     region_of: Bytes
     ranges: dict[str, tuple[int, int]]
+    limits: dict[str, float]
 
     def members(self, name: str) -> slice:
         """The vertices of a region or sub-region, for example ``upper_lip_l``; raises UnknownNameError."""
@@ -80,13 +88,15 @@ def load_regions(path: Path, vertex_count: int) -> Regions:
         low, high = file.regions.get(owner, [0, -1])
         if first > last or not (low <= first and last <= high):
             document.fault(("sub_regions", name), f"a range inside {owner}, {low}..{high}", f"{first}..{last}")
+    for name in sorted(file.limits.keys() ^ set(LIMITED)):
+        document.fault(("limits",), f"a limit for each of {', '.join(LIMITED)}", f"{name} missing or unknown")
     document.check()
     region_of = np.empty(vertex_count, np.uint8)
     for index, name in enumerate(REGIONS):
         first, last = file.regions[name]
         region_of[first : last + 1] = index
     ranges = {name: (first, last) for name, (first, last) in (file.regions | file.sub_regions).items()}
-    return Regions(region_of, ranges)
+    return Regions(region_of, ranges, dict(file.limits))
 
 
 def _check_names(document: Document, key: str, found: dict[str, list[int]], known: tuple[str, ...]) -> None:

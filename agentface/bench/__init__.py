@@ -13,6 +13,9 @@ from agentface.resources import DEFAULT_FACE
 BENCHES: dict[str, str] = {
     "deform": "the muscles of one face, beside plain loops and a blendshape product",
     "fuzzy": "one inference of the rules, beside scikit-fuzzy",
+    "papers": "the paper's Table 1: its loops with and without its improvements, and ours",
+    "frame": "the whole face, beside a blendshape product with normals, and how it grows with the mesh",
+    "crowd": "many faces in one call, on one thread and on two",
 }
 """The benchmarks and what they compare; each is a module of this package with ``run() -> dict``."""
 

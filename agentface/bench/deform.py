@@ -2,17 +2,13 @@
 
 from __future__ import annotations
 
-import ctypes
-import time
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from functools import partial
-from pathlib import Path
-from statistics import median
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from agentface.bench.timing import blendshapes, interleave, one_thread
 from agentface.conventions import Doubles
 from agentface.deform.combine import STEP, Combiner
 from agentface.deform.normals import NormalField
@@ -20,8 +16,6 @@ from agentface.deform.normals import NormalField
 if TYPE_CHECKING:
     from agentface.anatomy.model import HeadModel
 
-BLENDSHAPES = 52
-"""The shapes of an ARKit rig."""
 SMILE = ("zygomaticus_major", "orbicularis_oculi_lateralis", "levator_labii_superioris", "frontalis_medialis")
 """A broad smile with raised brows, both sides: eight muscles, among them the face's widest."""
 
@@ -58,7 +52,7 @@ def run(model: HeadModel | None = None, rounds: int = 200) -> dict[str, Any]:
         return partial(plain.contract, rest, *work, constants, levels, STEP, region_of, masks)
 
     every = np.full(count, -1, dtype=np.int64)
-    tasks: dict[str, Callable[[], Any]] = _blendshapes(rest.size, draw)
+    tasks: dict[str, Callable[[], Any]] = blendshapes(rest.size, draw)
     tasks["copy"] = lambda: np.copyto(out, rest)
     field = NormalField(model.triangles, len(rest))
     tasks["normals"] = lambda: field.compute(rest, out)
@@ -66,8 +60,8 @@ def run(model: HeadModel | None = None, rounds: int = 200) -> dict[str, Any]:
         tasks[f"{name}.ours"] = tasks[f"{name}.ours_warm"] = partial(combiner.apply, levels, out)
         tasks[f"{name}.loop"] = loops(levels, every)
         tasks[f"{name}.cutoff"] = loops(levels, mask)
-    with _one_thread() as limited:
-        times = _interleave(tasks, rounds)
+    with one_thread() as limited:
+        times = interleave(tasks, rounds)
     report: dict[str, Any] = {"vertices": len(rest), "muscles": count, "normals_us": times["normals"]}
     report["gemv_one_thread"] = limited
     for name in ("active_8", "active_all"):
@@ -92,43 +86,3 @@ def _compare(name: str, times: dict[str, float]) -> dict[str, float]:
         "loop_to_ours_ratio": loop / ours,
         "cutoff_to_ours_ratio": cutoff / ours,
     }
-
-
-def _blendshapes(size: int, draw: np.random.Generator) -> dict[str, Callable[[], Any]]:
-    basis = draw.random((BLENDSHAPES, size), dtype=np.float32)
-    turned = np.ascontiguousarray(basis.T)
-    weights = draw.random(BLENDSHAPES, dtype=np.float32)
-    out = np.empty(size, dtype=np.float32)
-    rows, columns = partial(np.dot, weights, basis, out=out), partial(np.dot, turned, weights, out=out)
-    return {"gemv_rows": rows, "gemv_rows_warm": rows, "gemv_columns": columns, "gemv_columns_warm": columns}
-
-
-@contextmanager
-def _one_thread() -> Iterator[bool]:
-    """Holds the OpenBLAS of numpy's wheels to one thread; yields whether it could be found."""
-    for path in Path(np.__file__).parents[1].glob("numpy.libs/*openblas*"):
-        library = ctypes.CDLL(str(path))
-        for ending in ("64_", ""):
-            get = getattr(library, f"scipy_openblas_get_num_threads{ending}", None)
-            limit = getattr(library, f"scipy_openblas_set_num_threads{ending}", None)
-            if get and limit:
-                before = get()
-                limit(1)
-                try:
-                    yield True
-                finally:
-                    limit(before)
-                return
-    yield False
-
-
-def _interleave(tasks: dict[str, Callable[[], Any]], rounds: int) -> dict[str, float]:
-    """The median time of each task in microseconds, all tasks once a round, after one round to compile them."""
-    times: dict[str, list[float]] = {name: [] for name in tasks}
-    for turn in range(rounds + 1):
-        for name, task in tasks.items():
-            start = time.perf_counter()
-            task()
-            if turn:
-                times[name].append(1e6 * (time.perf_counter() - start))
-    return {name: median(values) for name, values in times.items()}

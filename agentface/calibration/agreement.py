@@ -25,6 +25,7 @@ class Agreement:
         covered: part of these vertices that the muscles move at least a tenth of the artists' maximum.
         peak_ratio: the muscles' largest displacement over the artists'.
         peak_mm: the artists' largest displacement.
+        fitted: whether the calibration fits these muscles to this shape.
         region, artists_region: the paper's region, without side, where each is largest.
     """
 
@@ -34,9 +35,10 @@ class Agreement:
     peak_mm: float
     region: str
     artists_region: str
+    fitted: bool = True
 
 
-def agreement(model: HeadModel, muscles: Floats, artists: Floats) -> Agreement:
+def agreement(model: HeadModel, muscles: Floats, artists: Floats, *, fitted: bool = True) -> Agreement:
     """Compare two displacement fields ``(V, 3)`` in metres."""
     moved, wanted = np.linalg.norm(muscles, axis=1), np.linalg.norm(artists, axis=1)
     peak = float(wanted.max())
@@ -50,6 +52,7 @@ def agreement(model: HeadModel, muscles: Floats, artists: Floats) -> Agreement:
         peak_mm=1e3 * peak,
         region=_region(model, int(moved.argmax())),
         artists_region=_region(model, int(wanted.argmax())),
+        fitted=fitted,
     )
 
 
@@ -60,7 +63,7 @@ def measure(model: HeadModel, units: dict[int, ActionUnit]) -> dict[int, Agreeme
     result = {}
     for number, unit in units.items():
         moved = deformer.deform(FacePose.of(**unit.muscles)).vertices - rest
-        result[number] = agreement(model, moved, unit.shape(model))
+        result[number] = agreement(model, moved, unit.shape(model), fitted=unit.fitted)
     return result
 
 

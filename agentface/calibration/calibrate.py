@@ -58,10 +58,12 @@ def table(models: list[HeadModel]) -> str:
                 f"| {model.name} | {number} | {units[number].name} | {row.cosine:.2f} | {row.covered:.2f} "
                 f"| {row.peak_ratio:.2f} | {row.peak_mm:.1f} | {row.region} | {row.artists_region} |"
             )
-        lines.append(f"| {model.name} | all | mean | {mean_cosine(rows):.2f} | | | | | |")
+        for title, fitted in (("vector muscles", True), ("lids, lips, jaw", False)):
+            lines.append(f"| {model.name} | all | mean of {title} | {mean_cosine(rows, fitted=fitted):.2f} | | | | | |")
     return "\n".join(lines) + "\n"
 
 
-def mean_cosine(rows: dict[int, Agreement]) -> float:
-    """The mean over action units."""
-    return float(np.mean([row.cosine for row in rows.values()]))
+def mean_cosine(rows: dict[int, Agreement], *, fitted: bool = True) -> float:
+    """The mean over the action units that are fitted, or over the others; NaN without any."""
+    chosen = [row.cosine for row in rows.values() if row.fitted == fitted]
+    return float(np.mean(chosen)) if chosen else float("nan")

@@ -40,9 +40,9 @@ class Group:
 
 
 def groups(units: Sequence[ActionUnit]) -> list[Group]:
-    """The action units grouped so that no muscle is in two groups."""
+    """The action units that are fitted, grouped so that no muscle is in two groups."""
     result: list[Group] = []
-    for unit in units:
+    for unit in filter(lambda unit: unit.fitted, units):
         touching = [group for group in result if set(group.muscles) & unit.muscles.keys()]
         result = [group for group in result if group not in touching]
         members = (*(member for group in touching for member in group.units), unit)

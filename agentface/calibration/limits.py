@@ -8,6 +8,8 @@ from agentface.errors import OutputError
 
 LOWEST_MEAN_COSINE = 0.85
 LOWEST_COSINE = 0.7
+LOWEST_OTHER_COSINE = 0.6
+"""Of the action units that lids, lips and jaw make: these are not fitted."""
 PEAK_RATIOS = (0.7, 1.4)
 
 BEGIN = "<!-- begin: written by `agentface calibrate --table -o docs/calibration.md` -->\n"
@@ -22,8 +24,11 @@ def missed(rows: dict[int, Agreement]) -> list[str]:
         result.append(f"mean cosine: expected at least {LOWEST_MEAN_COSINE}, got {mean:.3f}")
     low, high = PEAK_RATIOS
     for number, row in rows.items():
-        if row.cosine < LOWEST_COSINE:
-            result.append(f"AU {number}: expected a cosine of at least {LOWEST_COSINE}, got {row.cosine:.3f}")
+        lowest = LOWEST_COSINE if row.fitted else LOWEST_OTHER_COSINE
+        if row.cosine < lowest:
+            result.append(f"AU {number}: expected a cosine of at least {lowest}, got {row.cosine:.3f}")
+        if not row.fitted:
+            continue
         if not low <= row.peak_ratio <= high:
             result.append(f"AU {number}: expected a peak ratio in {low}..{high}, got {row.peak_ratio:.3f}")
         if row.region != row.artists_region:

@@ -15,17 +15,24 @@ from agentface.commands.options import face_options, json_option, write_json
 @json_option
 @face_options
 def bench(*, name: str | None, json_file: str | None, face: str, deformer: str) -> None:
-    """Run one benchmark, or all: deform, fuzzy."""
-    from agentface.bench import BENCHES, run
+    """Run one benchmark, or all: deform, fuzzy, papers, frame, crowd."""
+    from agentface.bench import BENCHES
     from agentface.face import check_deformer
 
     check_deformer(deformer)
-    figures = run(name, face) if name else {each: run(each, face) for each in BENCHES}
+    figures = _measured(name, face) if name else {each: _measured(each, face) for each in BENCHES}
     if json_file is not None:
         write_json(json_file, figures)
         return
     for key, value in _flat(figures):
         click.echo(f"{key:<48} {value:.4g}" if isinstance(value, float) else f"{key:<48} {value}")
+
+
+def _measured(name: str, face: str) -> dict[str, Any]:
+    from agentface.bench import BENCHES, run
+
+    click.echo(f"measuring {BENCHES.get(name, name)} …", err=True)
+    return run(name, face)
 
 
 def _flat(figures: dict[str, Any], prefix: str = "") -> Iterator[tuple[str, Any]]:

@@ -157,7 +157,9 @@ def _print(names: dict[int, str], before: Rows, after: Rows) -> None:
         cosine, ratio = f"{old.cosine:.2f} → {new.cosine:.2f}", f"{old.peak_ratio:.2f} → {new.peak_ratio:.2f}"
         region = new.region if new.region == new.artists_region else f"{new.region}, not {new.artists_region}"
         table.add_row(str(number), name, cosine, ratio, region)
-    table.add_row("all", "mean", f"{mean_cosine(before):.2f} → {mean_cosine(after):.2f}", "", "")
+    for title, fitted in (("vector muscles", True), ("lids, lips, jaw", False)):
+        means = [f"{mean_cosine(rows, fitted=fitted):.2f}" for rows in (before, after)]
+        table.add_row("all", f"mean of {title}", " → ".join(means), "", "")
     Console().print(table)
 
 
@@ -166,4 +168,9 @@ def _figures(rows: Rows) -> dict[str, Any]:
     from agentface.calibration.limits import missed
 
     units = {str(number): asdict(row) for number, row in rows.items()}
-    return {"mean_cosine": mean_cosine(rows), "missed": missed(rows), "action_units": units}
+    return {
+        "mean_cosine": mean_cosine(rows),
+        "mean_cosine_of_others": mean_cosine(rows, fitted=False),
+        "missed": missed(rows),
+        "action_units": units,
+    }

@@ -54,15 +54,17 @@ def _faults(place: Path) -> list[Fault]:
         return [fault for name in _rule_readers() for fault in _faults_of_file(place / name)]
     if not names & {"head.glb", *_face_readers()}:
         return [Fault(place, None, "", "a folder with rules or a face", "neither")]
-    found = [fault for name in _face_readers() for fault in _faults_of_file(place / name)]
+    looks = sorted((place / "looks").glob("*.yaml"))
+    found = [fault for path in [*(place / name for name in _face_readers()), *looks] for fault in _faults_of_file(path)]
     return found or _faults_of(lambda: _whole_face(place))
 
 
 def _faults_of_file(path: Path) -> list[Fault]:
     readers = _rule_readers() | _face_readers()
-    if path.name not in readers:
+    kind = "look.yaml" if path.parent.name == "looks" else path.name
+    if kind not in readers:
         return [Fault(path, None, "", f"one of {', '.join(readers)}", path.name)]
-    return _faults_of(lambda: readers[path.name](path))
+    return _faults_of(lambda: readers[kind](path))
 
 
 def _faults_of(read: Callable[[], object]) -> list[Fault]:

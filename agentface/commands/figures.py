@@ -10,6 +10,7 @@ from agentface.commands.options import face_options
 
 
 @click.command()
+@click.argument("names", nargs=-1, metavar="[NAME]...")
 @click.option(
     "-o",
     "--output",
@@ -20,14 +21,20 @@ from agentface.commands.options import face_options
     help="Where to write.",
 )
 @face_options
-def figures(*, output: Path, face: str, deformer: str) -> None:
-    """Draw the comparison of the ways to combine muscles, for docs/muscles.md."""
+def figures(*, names: tuple[str, ...], output: Path, face: str, deformer: str) -> None:
+    """Draw the figures of the papers with this face, and the other pictures of the documents: all, or some by NAME."""
+    from agentface.errors import UnknownNameError
     from agentface.face import check_deformer
-    from agentface.figures.combination import FIGURES, combination_figures
+    from agentface.figures import FIGURES, draw
     from agentface.io.files import check_writable, write_file
 
     check_deformer(deformer)
-    check_writable(output / f"{next(iter(FIGURES))}.png")
-    for name, content in combination_figures(face).items():
-        write_file(output / name, content)
-        click.echo(f"{output / name}: {len(content) / 1024:.0f} kB")
+    for name in names:
+        if name not in FIGURES:
+            raise UnknownNameError("figure", name, tuple(FIGURES))
+    check_writable(output / "figure.png")
+    for name in names or tuple(FIGURES):
+        click.echo(f"{name}: {FIGURES[name]}")
+        for file, content in draw(face, (name,)):
+            write_file(output / file, content)
+            click.echo(f"  {output / file}: {len(content) / 1024:.0f} kB")

@@ -18,6 +18,11 @@ _Command = TypeVar("_Command", bound=Callable[..., Any])
 
 def assignments(_: click.Context, __: click.Parameter, values: Sequence[str]) -> dict[str, float]:
     """``NAME=V``, several times or several joined by commas, as a mapping."""
+    return read_assignments(values)
+
+
+def read_assignments(values: Sequence[str]) -> dict[str, float]:
+    """The mapping that texts of ``NAME=V``, joined by commas, mean; raises BadParameter."""
     merged: dict[str, float] = {}
     for part in (part.strip() for value in values for part in value.split(",")):
         name, _equals, number = part.partition("=")
@@ -49,6 +54,17 @@ def angles(_: click.Context, __: click.Parameter, value: str | None) -> tuple[fl
     return yaw, pitch
 
 
+def point(_: click.Context, __: click.Parameter, value: str | None) -> tuple[float, float, float] | None:
+    """``X,Y,Z`` in metres."""
+    if value is None:
+        return None
+    try:
+        x, y, z = (float(part) for part in value.split(","))
+    except ValueError:
+        raise click.BadParameter(f"expected X,Y,Z in metres, got {value!r}; for example 0,0,0.5") from None
+    return x, y, z
+
+
 def address(_: click.Context, __: click.Parameter, value: str) -> tuple[str, int]:
     """``HOST:PORT``."""
     host, _colon, port = value.rpartition(":")
@@ -72,6 +88,9 @@ camera_option = click.option(
     "--camera", type=click.Choice(["front", "three-quarter", "profile"]), default="front", show_default=True
 )
 quality_option = click.option("--quality", type=click.Choice(["fast", "portrait"]), default="fast", show_default=True)
+look_option = click.option(
+    "--look", metavar="NAME|PATH", help="Another look than the face's own: a file of its folder looks, or a path."
+)
 json_option = click.option(
     "--json", "json_file", metavar="FILE", help="Write one JSON object to FILE, - for the standard output."
 )
@@ -88,11 +107,11 @@ def face_options(command: _Command) -> _Command:
     return face(deformer(command))
 
 
-def make_face(face: str, deformer: str, *, compiled: bool = True) -> Face:
-    """The face that ``--face`` and ``--deformer`` name; not ``compiled``, it is ready sooner and slow a frame."""
+def make_face(face: str, deformer: str, *, compiled: bool = True, look: str | None = None) -> Face:
+    """The face that the options name; not ``compiled``, it is ready sooner and slow a frame."""
     from agentface.face import Face
 
-    return Face(face, deformer=deformer, compiled=compiled)
+    return Face(face, deformer=deformer, compiled=compiled, look=look)
 
 
 def write_json(file: str, content: dict[str, Any]) -> None:

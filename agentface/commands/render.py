@@ -12,7 +12,9 @@ from agentface.commands.options import (
     camera_option,
     emotion_option,
     face_options,
+    look_option,
     make_face,
+    point,
     quality_option,
     size_option,
 )
@@ -29,7 +31,14 @@ from agentface.commands.options import (
     help="A muscle, 0..1.",
 )
 @click.option("--gaze", callback=angles, metavar="YAW,PITCH", help="Degrees to the person's left, and upward.")
+@click.option(
+    "--look-at",
+    callback=point,
+    metavar="X,Y,Z",
+    help="A point to look at instead: metres to the person's left, up and forward of the head's origin.",
+)
 @click.option("--jaw", type=float, metavar="V", help="Opening of the jaw, 0..1.")
+@look_option
 @size_option
 @quality_option
 @camera_option
@@ -40,7 +49,9 @@ def render(
     emotions: dict[str, float],
     muscles: dict[str, float],
     gaze: tuple[float, float] | None,
+    look_at: tuple[float, float, float] | None,
     jaw: float | None,
+    look: str | None,
     size: tuple[int, int],
     quality: str,
     camera: str,
@@ -57,7 +68,7 @@ def render(
 
     check_picture_name(output)
     check_writable(output)
-    shown = make_face(face, deformer, compiled=False)  # one frame does not pay for loading the compiler
+    shown = make_face(face, deformer, compiled=False, look=look)  # one frame does not pay for loading the compiler
     shown.set_emotion(emotions, fade=0.0)
     for name, contraction in muscles.items():
         shown.set_muscle(name, contraction, fade=0.0)
@@ -65,4 +76,6 @@ def render(
         shown.set_jaw(jaw, fade=0.0)
     if gaze is not None:
         shown.set_gaze(*gaze, fade=0.0)
+    if look_at is not None:
+        shown.look_at(look_at, fade=0.0)
     write_picture(output, shown.render(size, camera, quality))

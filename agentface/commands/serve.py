@@ -89,9 +89,9 @@ def _announce(face: Face, place: str) -> None:
 
 
 def _open_window(face: Face, place: str) -> None:
-    from agentface.view.window import Window
+    from agentface.commands.show import make_window
 
-    window = Window(face)
+    window = make_window(face)
     _announce(face, place)
     signal.signal(signal.SIGTERM, signal.default_int_handler)
     with suppress(KeyboardInterrupt):

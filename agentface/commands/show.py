@@ -2,17 +2,32 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from typing import TYPE_CHECKING
+
 import click
 
 from agentface.commands.options import face_options, make_face
+
+if TYPE_CHECKING:
+    from agentface.face import Face
+    from agentface.view.window import Window
 
 
 @click.command()
 @face_options
 def show(*, face: str, deformer: str) -> None:
-    """Open the live window: keys 1 to 6 raise an emotion each, the mouse turns the view."""
-    from agentface.view.window import Window
-
+    """Open the live window: a panel with sliders, keys 1 to 6 for the emotions, the mouse for the view."""
     shown = make_face(face, deformer)
     shown.warm_up()
-    Window(shown).run()
+    make_window(shown).run()
+
+
+def make_window(face: Face, say: Callable[[str], object] = click.echo) -> Window:
+    """A window that writes its pictures and films into the current folder."""
+    from agentface.io.picture import write_picture
+    from agentface.io.video import VideoWriter
+    from agentface.view.capture import Capture
+    from agentface.view.window import Window
+
+    return Window(face, capture=Capture(write_picture, VideoWriter, say), say=say)

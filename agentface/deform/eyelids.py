@@ -1,101 +1,117 @@
-"""The eyelids: they turn about the eyeball's axis between open and closed (Parke 1974; Bui et al., section 3.3)."""
+"""The eyelids (Bui et al., section 3.3): Parke's lids on a sphere, Waters' sphincter, and how the two couple.
+
+Round an eye's centre, with theta the turn of a point about the lateral axis and rho its distance from that axis:
+
+    theta' = theta + c A + t B + (1 - c) (o W + g G)        rho' = rho (1 + c D + t E)
+
+``c`` is the closing, ``t = min(1, 2 s)`` what the squeeze ``s`` raises the line where the lids meet, ``o`` the
+levator, ``g`` the eye's pitch. A, B, W, G, D, E are fields over the skin (:mod:`agentface.deform.lid_fields`): the
+edges interpolate linearly between open and closed, where both lie on one curve; the skin follows with a fade, down
+onto the sphere that the closed edge lies on. No point goes below a sphere slightly larger than the eye. Before that
+the skin goes the way ``s (2 - s)`` of the sphincter: like a squint, most of it with little force.
+"""
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 
-from agentface.anatomy.model import HeadModel, RingHalves
-from agentface.conventions import SIDES, Doubles, Floats
+from agentface.anatomy.model import HeadModel
+from agentface.conventions import SIDES, Floats, Indices
+from agentface.deform import eyes
+from agentface.deform.eyes import EyesTables
+from agentface.deform.lid_fields import lid_fields
 from agentface.parameters import indices_of
 
-_EDGE_RING = 3
-_MEETING = 0.22  # where the closed lids meet, from the lower edge up, as a part of the opening
-_WIDEST = 0.27  # rad, how far the upper lid rises past neutral in the middle of the eye
-_SQUEEZE_UPPER, _SQUEEZE_LOWER = 0.22, 1.15  # how far a squeeze brings each lid towards where they meet
-_FOLLOW_UPPER, _FOLLOW_LOWER = 0.55, 0.25  # of the eye's pitch, which the lids follow
-_LID_HEIGHT = {"upper": 0.62, "lower": 0.60}  # rad above or below the edge over which the skin follows it
+HOLD, CLOSE, HIGHER, WIDEN, FOLLOW, SHRINK, SHRINK_HIGHER, ACROSS, UP, FLOOR = range(10)
+"""Rows of a block of :attr:`EyelidsTables.fields`."""
+LANES = 16
+"""Vertices a block: as many as the compiled loop moves at once."""
+LOOKING_UP = np.float32(0.7)
+"""How much of following an eye upward a levator at full contraction leaves out: it has done the lifting."""
+_NEAR = np.float32(1e-6)  # m
+_ZERO, _ONE, _TWO = (np.float32(number) for number in (0.0, 1.0, 2.0))
 
 
-class Eyelids:
-    """Moves the lids of one face.
+class EyelidsTables(NamedTuple):
+    """What the lids of one face need; the left eye first, the right one its mirror image."""
 
-    Every vertex near an eye gets, at rest, its lid (upper or lower), how much of the edge's turn it follows,
-    and the angle at its place across the eye between the open edge and the line where the lids meet.
+    vertex: Indices
+    """``(2, B, LANES)``: the vertices round each eye, in blocks; the last vertex fills the last block up."""
+    rest: Floats
+    """``(2, B, 3, LANES)`` m: where they rest."""
+    centre: Floats
+    """``(2, 3)`` m: the centres of the eyes."""
+    fields: Floats
+    """``(B, 10, LANES)``: what :class:`agentface.deform.lid_fields.LidFields` has after ``vertex``, in its order."""
+    closing: Indices
+    """``(2,)``: where pars palpebralis stands in a pose."""
+    squeezing: Indices
+    """``(2,)``: pars orbitalis."""
+    opening: Indices
+    """``(2,)``: levator palpebrae."""
+    eyes: EyesTables
+    """How far the eyes turn: the lids follow them."""
+
+
+def prepare(model: HeadModel) -> EyelidsTables:
+    """The tables of a face."""
+    fields = lid_fields(model)
+    count = len(fields.vertex)
+    full = np.minimum(np.arange(-(-count // LANES) * LANES), count - 1).reshape(-1, LANES)
+    vertex = np.stack([fields.vertex[full], model.mirror[fields.vertex[full]]]).astype(np.int32)
+    columns = [getattr(fields, name)[full] for name in fields.__slots__[1:]]
+    return EyelidsTables(
+        vertex=vertex,
+        rest=np.ascontiguousarray(np.moveaxis(model.vertices[vertex], 3, 2)),
+        centre=np.stack([model.eye_centre(side) for side in SIDES]),
+        fields=np.ascontiguousarray(np.stack(columns, axis=1), np.float32),
+        closing=np.array(indices_of("orbicularis_oculi_palpebralis"), np.int32),
+        squeezing=np.array(indices_of("orbicularis_oculi_orbitalis"), np.int32),
+        opening=np.array(indices_of("levator_palpebrae"), np.int32),
+        eyes=eyes.prepare(model),
+    )
+
+
+def coupled(closing: float, squeezing: float, other_closing: float, other_squeezing: float) -> tuple[float, float]:
+    """The closing and the squeezing of an eye as its two muscles and those of the other eye make them, 0..1.
+
+    The paper: if squeezing > closing / 2, closing = min(1, 2 squeezing) (it prints max); else, if one tries to close
+    only one eye, squeezing = closing / 2. Each branch raises one number to what the other asks for, so both are a
+    maximum. "Only one" is a matter of degree here: what counts is by how much the other eye is less closed.
     """
+    closed = max(closing, min(1.0, 2.0 * squeezing))
+    other = max(other_closing, min(1.0, 2.0 * other_squeezing))
+    return closed, max(squeezing, 0.5 * (closed - other))
 
-    def __init__(self, model: HeadModel) -> None:
-        self._eyes = [_Lids(model, side) for side in SIDES]
-        self._close, self._open, self._squeeze = (
-            indices_of(name)
-            for name in ("orbicularis_oculi_palpebralis", "levator_palpebrae", "orbicularis_oculi_orbitalis")
+
+def apply(tables: EyelidsTables, values: Floats, points: Floats) -> None:
+    """Move the lids and what they take along of ``points (V + C, 3)`` m in place, to the parameters ``values``."""
+    closing, squeezing, opening = (values[row] for row in (tables.closing, tables.squeezing, tables.opening))
+    columns = np.moveaxis(tables.fields, 1, 0).reshape(FLOOR + 1, -1)
+    hold, close, higher, widen, follow, shrink, shrink_higher, across, up, floor = columns
+    for side in range(len(SIDES)):
+        c, s = (
+            np.float32(level)
+            for level in coupled(closing[side], squeezing[side], closing[1 - side], squeezing[1 - side])
         )
-        self._pitch = indices_of("gaze_pitch")[0]
-
-    def apply(self, values: Floats, vertices: Floats) -> None:
-        """Move the lids of ``vertices (V, 3)`` in place, to the parameters ``values``."""
-        for lids, close, opened, squeeze in zip(self._eyes, self._close, self._open, self._squeeze, strict=True):
-            lids.apply(
-                vertices,
-                float(values[close]),
-                float(values[opened]),
-                float(values[squeeze]),
-                float(values[self._pitch]),
-            )
-
-
-class _Lids:
-    def __init__(self, model: HeadModel, side: str) -> None:
-        centre = model.eye_centre(side).astype(np.float64)
-        self._centre = model.eye_centre(side)
-        edge = model.eyelids.rings[side][_EDGE_RING]
-        arms = model.vertices.astype(np.float64) - centre
-        across, turn = arms[:, 0], np.arctan2(arms[:, 1], arms[:, 2])
-        upper, lower = (_edge_turn(half, across, turn) for half in (edge.upper, edge.lower))
-        opening = np.maximum(upper - lower, 0.0)
-        meeting = lower + _MEETING * opening
-        is_upper = turn >= np.where(opening > 0.02, meeting, 0.5 * (upper + lower))
-        follow = _follow(arms, across, turn, upper, lower, is_upper, edge)
-        near = (arms[:, 2] > 0) & (np.linalg.norm(arms, axis=1) < 2.9 * model.eyes.radius) & (follow > 1e-3)
-        own = model.vertices[:, 0] * (1 if side == SIDES[0] else -1) > 0.005
-        self._where = np.flatnonzero(near & own)
-        pick = self._where
-        self._is_upper = is_upper[pick]
-        # one turn of the edge, in radians, for each thing a lid does; positive lifts
-        to_meeting = np.where(is_upper, meeting - upper, meeting - lower)[pick]
-        self._closing = (follow[pick] * to_meeting).astype(np.float32)
-        self._follow = follow[pick].astype(np.float32)
-        profile = is_upper * opening / opening.max()
-        self._widening = (follow * profile)[pick].astype(np.float32)
-
-    def apply(self, vertices: Floats, close: float, opened: float, squeeze: float, pitch: float) -> None:
-        if not (close or opened or squeeze or pitch):
-            return
-        shut_upper = np.clip(close + _SQUEEZE_UPPER * squeeze, 0, 1)
-        shut_lower = np.clip(close + _SQUEEZE_LOWER * squeeze, 0, 1)
-        gaze = pitch * (1 - close) * np.where(self._is_upper, _FOLLOW_UPPER, _FOLLOW_LOWER)
-        angle = self._closing * np.where(self._is_upper, shut_upper, shut_lower) + self._follow * gaze
-        angle += _WIDEST * opened * (1 - close) * self._widening
-        cosine, sine = np.cos(angle), np.sin(angle)
-        arm = vertices[self._where] - self._centre
-        vertices[self._where, 1] = self._centre[1] + cosine * arm[:, 1] + sine * arm[:, 2]
-        vertices[self._where, 2] = self._centre[2] - sine * arm[:, 1] + cosine * arm[:, 2]
-
-
-def _edge_turn(edge: list[int], across: Doubles, turn: Doubles) -> Doubles:
-    """The lid edge's angle about the eye's lateral axis at the place across of every vertex."""
-    order = np.argsort(across[edge])
-    return np.interp(across, across[edge][order], turn[edge][order])
-
-
-def _follow(
-    arms: Doubles, across: Doubles, turn: Doubles, upper: Doubles, lower: Doubles,
-    is_upper: np.typing.NDArray[np.bool_], edge: RingHalves,
-) -> Doubles:  # fmt: skip
-    beyond = np.where(is_upper, (turn - upper) / _LID_HEIGHT["upper"], (lower - turn) / _LID_HEIGHT["lower"])
-    first, last = across[edge.upper].min(), across[edge.upper].max()
-    outside = np.maximum(np.maximum(first - across, across - last), 0.0) / (0.35 * (last - first))
-    return _fade(np.clip(beyond, 0, 1)) * _fade(np.clip(outside, 0, 1))
-
-
-def _fade(t: Doubles) -> Doubles:
-    return 1 - t * t * (3 - 2 * t)
+        raised, o = min(_ONE, _TWO * s), np.float32(opening[side])
+        pitch = np.float32(eyes.eye_angles(tables.eyes, values, side)[1])
+        pitch *= _ONE - LOOKING_UP * o * (pitch > 0)
+        where, centre = tables.vertex[side].ravel(), tables.centre[side]
+        at, rest = points[where], np.moveaxis(tables.rest[side], 1, 2).reshape(-1, 3)
+        at -= hold[:, None] * (at - rest)
+        way = s * (_TWO - s)
+        at[:, 0] += way * across * (1 - 2 * side)
+        at[:, 1] += way * up
+        angle = c * close + raised * higher + (_ONE - c) * (o * widen + pitch * follow)
+        scale = _ONE + c * shrink + raised * shrink_higher
+        cosine, sine = scale * np.cos(angle) - _ONE, scale * np.sin(angle)
+        y, z = at[:, 1] - centre[1], at[:, 2] - centre[2]
+        at[:, 1] += cosine * y + sine * z
+        at[:, 2] += cosine * z - sine * y
+        arm = at - centre
+        distance = np.sqrt((arm * arm).sum(1))
+        at += np.maximum(floor / np.maximum(distance, _NEAR) - _ONE, _ZERO)[:, None] * arm
+        points[where] = at

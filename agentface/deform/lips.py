@@ -1,72 +1,150 @@
-"""Orbicularis oris, simple form: two displacement fields round the mouth, puckering and pressing the lips."""
+"""The lips as a B-spline surface, and orbicularis oris on its control points (Bui et al., sections 2.2 and 3.2).
+
+The surface is bicubic: 24 columns of control points that close round the mouth, 6 rows from inside the mouth over the
+red to the skin. What moves the mouth moves the control points; the vertices of the lips take the surface's movement,
+so that the lips at rest keep every detail of the mesh.
+"""
 
 from __future__ import annotations
+
+from typing import NamedTuple
 
 import numpy as np
 
 from agentface.anatomy.model import HeadModel
-from agentface.conventions import Doubles, Floats
+from agentface.conventions import Doubles, Floats, Indices
+from agentface.deform.lip_grid import SEAM_RING, lip_grid
+from agentface.deform.lip_skirt import skirt as lip_skirt
+from agentface.deform.lip_surface import COLUMNS, control_places, fit, grid_places, weights
+from agentface.deform.orbicularis_oris import contractions
 from agentface.parameters import indices_of
 
-_SEAM, _VERMILION = 0, 7
+_BLEND = (0.34, 0.67, 1.0)  # from the innermost ring of the patch
+_OUTER_BLEND = (0.12, 0.5, 0.88)  # from its outermost ring
 
 
-class Lips:
-    """Presses and puckers the lips of one face; each contraction scales a field made at rest."""
+class LipTables(NamedTuple):
+    """What the lips of one face need a frame.
 
-    def __init__(self, model: HeadModel) -> None:
-        fields = {"orbicularis_oris_press": _press(model), "orbicularis_oris_pucker": _pucker(model)}
-        self._fields = []
-        for name, field in fields.items():
-            where = np.flatnonzero(np.abs(field).max(axis=1) > 1e-6)
-            self._fields.append((indices_of(name)[0], where, field[where].astype(np.float32)))
+    Attributes:
+        skin_count: V; the control points are the rows from here on.
+        control_rest: ``(144, 3)`` m.
+        control_vertices, control_weights: ``(144, 4)``: skin vertices over which a control point lies, and their
+            weights, which sum to 1.
+        across, along: ``(N,)`` 0..24, ``(R,)`` 0..1: where columns and rings of the patch lie on the surface.
+        patch: ``(P,)`` vertices that take the surface's movement, one ring of the grid after the other; P = R N.
+        controls, weight: ``(P, 16)``: the control points that act on each, and how much.
+        rest: ``(P, 3)`` m, the vertices at rest.
+        blend: ``(P,)`` 0..1, how far they follow the surface and not the skin.
+        rim: ``(K,)`` rows of ``patch`` whose blend is below 1.
+        skirt, skirt_index, skirt_weight: ``(F,)``, ``(F, 4)``, ``(F, 4)``: vertices beyond the patch that follow the
+            movement of its edge under orbicularis oris, the control points of the edge, and weights with the fade.
+        parameters: ``(2,)``, where pucker and press stand in a pose.
+        roll_from: 0..1, the press above which the lips also roll in.
+        shift: ``(3, 144, 3)`` m: rotation and extrusion of pucker, press and roll at full contraction.
+        target: ``(3, 144, 2)`` m: the place (x, y) of each control point on the ellipse.
+        pull: ``(3, 144)`` 0..1: how far each goes there.
+    """
 
-    def apply(self, values: Floats, vertices: Floats) -> None:
-        """Move ``vertices (V, 3)`` in place, to the parameters ``values``."""
-        for index, where, field in self._fields:
-            if values[index]:
-                vertices[where] += values[index] * field
-
-
-def _press(model: HeadModel) -> Doubles:
-    """The red of the lips is rolled in and flattened between the lips; corners stay."""
-    points = model.vertices.astype(np.float64)
-    across, above, height, width = _mouth_frame(model, points)
-    near = _fade(np.abs(above) / (2.3 * height)) * _fade(np.abs(across) / (1.15 * width)) * _front(model, points)
-    field = np.zeros_like(points)
-    field[:, 1] = -0.52 * above * near
-    field[:, 2] = -0.16 * height * near * _fade(np.abs(above) / (1.3 * height))
-    return field
-
-
-def _pucker(model: HeadModel) -> Doubles:
-    """The mouth is drawn together and pushed forward."""
-    points = model.vertices.astype(np.float64)
-    across, above, height, width = _mouth_frame(model, points)
-    radius = np.hypot(across / (1.75 * width), above / (3.6 * height))
-    near = _fade(radius) * _front(model, points, depth=0.030)
-    field = np.zeros_like(points)
-    field[:, 0] = -0.42 * across * near
-    field[:, 1] = 0.12 * above * near
-    field[:, 2] = 0.62 * height * near
-    return field
-
-
-def _mouth_frame(model: HeadModel, points: Doubles) -> tuple[Doubles, Doubles, float, float]:
-    """Places relative to the lip seam: across and above it, the lips' mean height and the mouth's half width, in m."""
-    seam, edge = model.lips.rings[_SEAM], model.lips.rings[_VERMILION]
-    line = 0.5 * sum(np.interp(points[:, 0], *points[half[::-1], :2].T) for half in (seam.upper, seam.lower))
-    middle = model.landmarks["upper_lip_middle"][1] - model.landmarks["lower_lip_middle"][1]
-    above = points[:, 1] - line
-    return points[:, 0], above, 0.5 * float(middle), float(points[edge.upper, 0].max())
+    skin_count: int
+    control_rest: Floats
+    control_vertices: Indices
+    control_weights: Floats
+    across: Floats
+    along: Floats
+    patch: Indices
+    controls: Indices
+    weight: Floats
+    rest: Floats
+    blend: Floats
+    rim: Indices
+    skirt: Indices
+    skirt_index: Indices
+    skirt_weight: Floats
+    parameters: Indices
+    roll_from: float
+    shift: Floats
+    target: Floats
+    pull: Floats
 
 
-def _front(model: HeadModel, points: Doubles, depth: float = 0.022) -> Doubles:
-    """1 on the lips, fading to 0 ``depth`` metres behind the corners of the mouth."""
-    corner = float(model.landmarks["mouth_corner_l"][2])
-    return _fade((corner - 0.004 - points[:, 2]) / depth)
+def prepare(model: HeadModel) -> LipTables:
+    """The tables of a face; raises InvalidValueError where the mesh round its mouth is no grid."""
+    grid, points = lip_grid(model), model.vertices.astype(np.float64)
+    across, along = grid_places(grid, points)
+    index, weight = weights(np.broadcast_to(across, grid.vertices.shape), along[:, None] + 0.0 * across)
+    index, weight = index.reshape(-1, 16), weight.reshape(-1, 16)
+    patch = grid.vertices.ravel()
+    control = fit(index, weight, points[patch])
+    blend = np.ones(grid.vertices.shape)
+    blend[: len(_BLEND)] = np.array(_BLEND)[:, None]
+    blend[-len(_OUTER_BLEND) :] = np.array(_OUTER_BLEND)[::-1, None]
+    line_index, line_weight = weights(np.arange(COLUMNS, dtype=np.float64), np.full(COLUMNS, along[SEAM_RING]))
+    fields = contractions(model, control, (line_weight[..., None] * control[line_index]).sum(1))
+    skirt, skirt_index, skirt_weight = lip_skirt(model, grid, points, across)
+    control_vertices, control_weights = control_places(grid, across, along)
+    return LipTables(
+        skin_count=len(points),
+        control_rest=control.astype(np.float32),
+        control_vertices=control_vertices,
+        control_weights=control_weights.astype(np.float32),
+        across=across.astype(np.float32),
+        along=along.astype(np.float32),
+        patch=patch,
+        controls=index.astype(np.int32),
+        weight=weight.astype(np.float32),
+        rest=np.ascontiguousarray(model.vertices[patch]),
+        blend=blend.ravel().astype(np.float32),
+        rim=np.flatnonzero(blend.ravel() < 1.0).astype(np.int32),
+        skirt=skirt,
+        skirt_index=skirt_index,
+        skirt_weight=skirt_weight.astype(np.float32),
+        parameters=np.array(
+            [indices_of(name)[0] for name in ("orbicularis_oris_pucker", "orbicularis_oris_press")], np.int32
+        ),
+        roll_from=model.lips.orbicularis_oris.roll_from,
+        shift=_stack([field.shift for field in fields]),
+        target=_stack([field.target for field in fields]),
+        pull=_stack([field.pull for field in fields]),
+    )
 
 
-def _fade(t: Doubles) -> Doubles:
-    t = np.clip(t, 0.0, 1.0)
-    return 1.0 - t * t * (3.0 - 2.0 * t)
+def contract(tables: LipTables, values: Floats, points: Floats) -> None:
+    """Orbicularis oris: p' = p + o (shift + pull (E(p) - p)) on the control points, E(p) the place on the ellipse.
+
+    ``shift`` is rotation and extrusion (Bui et al., section 3.2, misprint corrected: a sum of displacements). The
+    vertices at the patch's edge and beyond follow the surface there. ``points (V + 144, 3)`` m are moved in place.
+    """
+    levels = contraction_levels(tables, values)
+    if not levels.any():
+        return
+    control = points[tables.skin_count :]
+    moved = np.zeros_like(control)
+    for level, shift, target, pull in zip(levels, tables.shift, tables.target, tables.pull, strict=True):
+        moved += level * shift
+        moved[:, :2] += level * pull[:, None] * (target - control[:, :2])
+    points[tables.patch[tables.rim]] += _mixed(moved, tables.controls[tables.rim], tables.weight[tables.rim])
+    points[tables.skirt] += _mixed(moved, tables.skirt_index, tables.skirt_weight)
+    control += moved
+
+
+def contraction_levels(tables: LipTables, values: Floats) -> Floats:
+    """``(3,)``: how far pucker, press and roll are contracted; only a strong press rolls the lips in."""
+    pucker, press = values[tables.parameters]
+    beyond = max(0.0, (press - tables.roll_from) / (1.0 - tables.roll_from))
+    return np.array([pucker, press, beyond * beyond], np.float32)
+
+
+def surface(tables: LipTables, points: Floats) -> None:
+    """The vertices of the patch take rest + S(u, v; moved) - S(u, v; rest), blended into the skin at its edges."""
+    moved = points[tables.skin_count :] - tables.control_rest
+    there = tables.rest + _mixed(moved, tables.controls, tables.weight)
+    points[tables.patch] += tables.blend[:, None] * (there - points[tables.patch])
+
+
+def _mixed(moved: Floats, index: Indices, weight: Floats) -> Floats:
+    return np.asarray((weight[:, :, None] * moved[index]).sum(1), np.float32)
+
+
+def _stack(fields: list[Doubles]) -> Floats:
+    return np.ascontiguousarray(np.stack(fields), np.float32)

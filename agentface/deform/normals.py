@@ -31,6 +31,29 @@ def vertex_normals(vertices: npt.NDArray[np.floating[Any]], triangles: npt.NDArr
     return normals
 
 
+def corner_normals(
+    vertices: npt.NDArray[np.floating[Any]],
+    triangles: npt.NDArray[np.integer[Any]],
+    on_inner_foot: npt.NDArray[np.bool_],
+) -> Doubles:
+    """float64 unit ``(T, 3, 3)``: the normals that shade each corner of each triangle (Bui et al., section 4).
+
+    The mean normal of a vertex at the bottom between two wrinkles points straight out of the skin and hides the
+    valley; there, each triangle uses its own normal.
+
+    Args:
+        vertices: ``(V, 3)``, raised.
+        triangles: ``(T, 3)`` vertex indices.
+        on_inner_foot: ``(V,)``, see :func:`agentface.anatomy.trains.inner_feet`.
+    """
+    corners = np.asarray(vertices, dtype=np.float64)[triangles]
+    across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    length = np.linalg.norm(across, axis=1, keepdims=True)
+    flat = np.divide(across, length, out=np.zeros_like(across), where=length > 0.0)
+    shading: Doubles = vertex_normals(vertices, triangles)[triangles]
+    return np.where(on_inner_foot[triangles][:, :, None], flat[:, None, :], shading)
+
+
 class NormalField:
     """The normals of one mesh, whatever its vertices do, by a compiled kernel.
 

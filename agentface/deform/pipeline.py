@@ -2,17 +2,20 @@
 
 from __future__ import annotations
 
-from typing import Protocol
+from collections.abc import Callable
+from functools import partial
+from importlib import import_module
+from typing import Any, Protocol
 
 from agentface.anatomy.model import HeadModel
+from agentface.conventions import Floats
+from agentface.deform import frame
 from agentface.deform.combine import Combiner, Method
-from agentface.deform.eyelids import Eyelids
 from agentface.deform.geometry import FaceGeometry
-from agentface.deform.jaw import Jaw
-from agentface.deform.lips import Lips
 from agentface.deform.normals import NormalField
-from agentface.deform.turns import PoseTransforms
 from agentface.parameters import VECTOR_MUSCLES, FacePose, indices_of
+
+_PARTS = ("limits", "lips", "eyelids", "jaw", "contact", "between", "wrinkles", "shading", "eyes", "head")
 
 
 class Deformer(Protocol):
@@ -25,28 +28,67 @@ class Deformer(Protocol):
 class GeometricDeformer:
     """The muscle-based face of Bui, Heylen and Nijholt.
 
-    Vector muscles first, combined as ``combine`` says, on the face at rest; then lips, lids and jaw, which carry
-    the displaced skin along; then the normals. ``compiled=False`` takes the numpy forms of the kernels, the same
-    to 1e-7 m: ready at once, slow a frame.
+    The vector muscles move the skin and the control points of the lips, combined as ``combine`` says, as far as each
+    region allows; then orbicularis oris, the lids, and the jaw, which carries all that along; then the lips' surface
+    takes its vertices, lips and teeth are kept apart, and the wrinkles rise. ``compiled=False`` takes the numpy forms,
+    the same to 1e-6 m: ready at once, slow a frame.
     """
 
     def __init__(self, model: HeadModel, combine: Method = "parallel", *, compiled: bool = True) -> None:
-        self._combiner = Combiner(model.vertices, model.muscles, combine, compiled=compiled)
-        self._lips, self._eyelids, self._jaw = Lips(model), Eyelids(model), Jaw(model)
-        self._turns = PoseTransforms(model)
-        self._normals = NormalField(model.triangles, len(model.vertices), compiled=compiled)
+        tables, muscles = frame.prepare(model)
+        count = len(model.vertices)
+        self._points = tables.rest.copy()
+        self.geometry = FaceGeometry.at_rest(model.vertices, model.vertices, len(model.trains))
+        self.geometry.vertices = self._points[:count]
+        self._combiner = Combiner(tables.rest, muscles, combine, compiled=compiled)
+        self._normals = NormalField(model.triangles, count, compiled=compiled)
         first = indices_of(VECTOR_MUSCLES[0])[0]
         self._muscles = slice(first, first + len(VECTOR_MUSCLES))
-        self.geometry = FaceGeometry.at_rest(model.vertices, model.vertices)
+        self._stages = self._in_order(tables, "agentface.deform.compiled" if compiled else "agentface.deform")
 
     def deform(self, pose: FacePose) -> FaceGeometry:
-        """The face in ``pose``; the result's arrays are overwritten by the next call."""
-        geometry, values = self.geometry, pose.values
-        self._combiner.apply(values[self._muscles], geometry.vertices)
-        self._lips.apply(values, geometry.vertices)
-        self._eyelids.apply(values, geometry.vertices)
-        self._jaw.apply(values, geometry.vertices, geometry.jaw)
-        self._normals.compute(geometry.vertices, geometry.normals)
-        self._turns.eyes(values, geometry.eye_rotations)
-        self._turns.head(values, geometry.head)
-        return geometry
+        """The face in ``pose``; the result's arrays are overwritten by the next call.
+
+        Raises InvalidValueError for a contraction outside 0..1.
+        """
+        values = pose.values
+        for stage in self._stages.values():
+            stage(values)
+        return self.geometry
+
+    def stages(self) -> dict[str, Callable[[FacePose], None]]:
+        """What a frame consists of, in its order, by name: each goes on from what the ones before it left."""
+        return {name: partial(_act, stage) for name, stage in self._stages.items()}
+
+    def _in_order(self, tables: frame.PartTables, package: str) -> dict[str, Callable[[Floats], None]]:
+        part: dict[str, Any] = {name: import_module(f"{package}.{name}") for name in _PARTS}
+        shown, points = self.geometry, self._points
+        raised = part["wrinkles"]
+
+        def raise_wrinkles(values: Floats) -> None:
+            raised.levels(tables.wrinkles, values, shown.wrinkle_levels)
+            raised.heights(tables.wrinkles, values, shown.wrinkles)
+            raised.raise_vertices(tables.wrinkles, shown.wrinkles, shown.smooth_normals, shown.vertices)
+
+        return {
+            "muscles": lambda values: self._combiner.apply(values[self._muscles], points),
+            "limits": lambda _: part["limits"].apply(tables.limits, points),
+            "orbicularis_oris": lambda values: part["lips"].contract(tables.lips, values, points),
+            "eyelids": lambda values: part["eyelids"].apply(tables.eyelids, values, points),
+            "jaw": lambda values: part["jaw"].apply(tables.jaw, values, points),
+            "lips": lambda _: part["lips"].surface(tables.lips, points),
+            "contact": lambda values: part["contact"].apply(tables.contact, values, points),
+            "between": lambda _: part["between"].apply(tables.between, points),
+            "smooth_normals": lambda _: self._normals.compute(shown.vertices, shown.smooth_normals),
+            "wrinkles": raise_wrinkles,
+            "normals": lambda _: part["shading"].apply(
+                tables.shading, shown.wrinkles, shown.vertices, shown.smooth_normals, shown.normals
+            ),
+            "eyes": lambda values: part["eyes"].apply(tables.eyes, values, shown.eye_rotations),
+            "teeth": lambda values: part["jaw"].transform(tables.jaw, values, shown.jaw),
+            "head": lambda values: part["head"].apply(tables.head, values, shown.head),
+        }
+
+
+def _act(stage: Callable[[Floats], None], pose: FacePose) -> None:
+    stage(pose.values)

@@ -1,4 +1,4 @@
-"""Turns of the eyes and of the head as matrices."""
+"""The head's turn about the top of the neck."""
 
 from __future__ import annotations
 
@@ -9,6 +9,8 @@ import numpy as np
 from agentface.anatomy.model import HeadModel
 from agentface.conventions import Floats
 from agentface.parameters import indices_of
+
+_NECK_DEPTH = -0.01  # m, of the axis behind the ears
 
 
 def turn(yaw: float, pitch: float, roll: float = 0.0) -> Floats:
@@ -21,19 +23,11 @@ def turn(yaw: float, pitch: float, roll: float = 0.0) -> Floats:
 
 
 class PoseTransforms:
-    """Gaze inside the elliptical eye hole, and the head's turn about the top of the neck."""
+    """The head's turn about the top of the neck."""
 
     def __init__(self, model: HeadModel) -> None:
-        self._gaze = [indices_of(name)[0] for name in ("gaze_yaw", "gaze_pitch")]
         self._head = [indices_of(name)[0] for name in ("head_yaw", "head_pitch", "head_roll")]
-        self._limits = math.radians(model.eyes.yaw_limit_deg), math.radians(model.eyes.pitch_limit_deg)
-        self._neck = np.array([0.0, float(model.landmarks["gonion_l"][1]), -0.01], np.float32)
-
-    def eyes(self, values: Floats, rotations: Floats) -> None:
-        """Write the turns of both eyes into ``rotations (2, 3, 3)``."""
-        yaw, pitch = (float(values[index]) for index in self._gaze)
-        far = math.hypot(yaw / self._limits[0], pitch / self._limits[1])
-        rotations[:] = turn(yaw / max(far, 1.0), pitch / max(far, 1.0))
+        self._neck = np.array([0.0, float(model.landmarks["gonion_l"][1]), _NECK_DEPTH], np.float32)
 
     def head(self, values: Floats, transform: Floats) -> None:
         """Write the head's turn into ``transform (4, 4)``."""

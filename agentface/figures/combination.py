@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from io import BytesIO
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -21,6 +20,7 @@ from agentface.calibration.calibrate import anatomy_file
 from agentface.conventions import Bytes, Doubles
 from agentface.deform.combine import REFERENCE, Method
 from agentface.figures.mesh_view import FOLDED, SKIN, Colour, MeshView, draw_arrow, draw_mesh, folded
+from agentface.figures.sheet import INK, png, sheet
 
 if TYPE_CHECKING:
     from PIL.Image import Image
@@ -32,8 +32,7 @@ MUSCLES: dict[str, Colour] = {
     "levator_anguli_oris_l": (20, 138, 84),
     "levator_labii_superioris_l": (138, 62, 176),
 }
-_PANEL, _GAP, _CAPTION, _FINER = 400, 12, 52, 3
-_INK = (40, 40, 44)
+_PANEL, _FINER = 400, 3
 
 
 @dataclass(frozen=True, slots=True)
@@ -91,25 +90,25 @@ def deformed(model: HeadModel, muscles: MuscleSet, panel: Panel) -> tuple[Double
     return moved, Outcome(largest, int(folded(rest, moved, model.triangles).sum()))
 
 
-def combination_figures(face: str | Path) -> dict[str, bytes]:
+def figures(face: str | Path) -> dict[str, bytes]:
     """The figures as PNG files, by name; the same bytes for the same face."""
     model, muscles = strong_muscles(face)
-    return {f"{name}.png": _png(_sheet(model, muscles, panels)) for name, panels in FIGURES.items()}
+    return {f"{name}.png": png(_sheet(model, muscles, panels), _palette()) for name, panels in FIGURES.items()}
 
 
 def _sheet(model: HeadModel, muscles: MuscleSet, panels: Sequence[Panel]) -> Image:
-    from PIL import Image
+    outcomes = [deformed(model, muscles, panel) for panel in panels]
+    drawn = [_picture(model, muscles, panel, moved) for panel, (moved, _) in zip(panels, outcomes, strict=True)]
+    titles = [f"({panel.letter}) {panel.title}" if panel.letter else panel.title for panel in panels]
+    notes = [_note(panel, outcome) for panel, (_, outcome) in zip(panels, outcomes, strict=True)]
+    return sheet(list(zip(drawn, titles, notes, strict=True)), columns=3)
 
-    rows = -(-len(panels) // 3)
-    size = (3 * _PANEL + 4 * _GAP, rows * (_PANEL + _CAPTION) + (rows + 1) * _GAP)
-    sheet = Image.new("RGB", size, (255, 255, 255))
-    for i, panel in enumerate(panels):
-        row, column = divmod(i, 3)
-        place = (_GAP + column * (_PANEL + _GAP), _GAP + row * (_PANEL + _CAPTION + _GAP))
-        moved, outcome = deformed(model, muscles, panel)
-        sheet.paste(_picture(model, muscles, panel, moved), place)
-        _caption(sheet, (place[0], place[1] + _PANEL), panel, outcome)
-    return sheet
+
+def _note(panel: Panel, outcome: Outcome) -> str:
+    if panel.shows_muscles:
+        return "dots: where the muscles leave the bone"
+    count = f"{outcome.folded} triangles folded over" if outcome.folded else "no triangle folded over"
+    return f"moved up to {outcome.largest_mm:.1f} mm, {count}"
 
 
 def _picture(model: HeadModel, muscles: MuscleSet, panel: Panel, moved: Doubles) -> Image:
@@ -129,32 +128,9 @@ def _picture(model: HeadModel, muscles: MuscleSet, panel: Panel, moved: Doubles)
     return image.resize((_PANEL, _PANEL), Image.Resampling.BOX)
 
 
-def _caption(sheet: Image, place: tuple[int, int], panel: Panel, outcome: Outcome) -> None:
-    from PIL import ImageDraw, ImageFont
-
-    draw = ImageDraw.Draw(sheet)
-    title = f"({panel.letter}) {panel.title}" if panel.letter else panel.title
-    draw.text((place[0] + 4, place[1] + 4), title, fill=_INK, font=ImageFont.load_default(21))
-    note = "dots: where the muscles leave the bone"
-    if not panel.shows_muscles:
-        count = f"{outcome.folded} triangles folded over" if outcome.folded else "no triangle folded over"
-        note = f"moved up to {outcome.largest_mm:.1f} mm, {count}"
-    draw.text((place[0] + 4, place[1] + 29), note, fill=_INK, font=ImageFont.load_default(16))
-
-
-def _png(image: Image) -> bytes:
-    from PIL import Image
-
-    buffer = BytesIO()
-    palette = Image.new("P", (1, 1))
-    palette.putpalette(_palette().tobytes())
-    image.quantize(palette=palette, dither=Image.Dither.NONE).save(buffer, "PNG", optimize=True)
-    return buffer.getvalue()
-
-
 def _palette() -> Bytes:
     """``(N, 3)``: shades of skin, folded skin, the muscles' colours, greys; a picked palette loses the rare ones."""
     white, black = np.full(3, 255.0), np.zeros(3)
-    ramps = [(black, SKIN, 80), (0.3 * FOLDED, FOLDED, 16), (FOLDED, SKIN, 16), (np.array(_INK), white, 32)]
+    ramps = [(black, SKIN, 80), (0.3 * FOLDED, FOLDED, 16), (FOLDED, SKIN, 16), (np.array(INK), white, 32)]
     ramps += [(np.array(colour), end, 16) for colour in MUSCLES.values() for end in (white, 0.8 * SKIN)]
     return np.concatenate([np.linspace(*ramp) for ramp in ramps]).astype(np.uint8)

@@ -11,7 +11,7 @@ import numpy as np
 from agentface.conventions import Doubles
 from agentface.emotion.state import EMOTIONS, EmotionState
 from agentface.motion.envelope import Envelope
-from agentface.parameters import COUNT, MUSCLES, PARAMETERS, indices_of
+from agentface.parameters import COUNT, MUSCLES, NAMES, PARAMETERS, indices_of
 
 
 class Contractor(Protocol):
@@ -91,6 +91,11 @@ class MuscleChannel:
         """Give one muscle, or all, back to the other channels."""
         self._weight.move(0.0, fade, slice(None) if name is None else np.array(indices_of(name)))
 
+    @property
+    def held(self) -> dict[str, float]:
+        """The parameters that are set, and the contraction that each goes to."""
+        return {NAMES[index]: float(self._value.target[index]) for index in np.flatnonzero(self._weight.target)}
+
     def advance(self, dt: float) -> None:
         """Let ``dt`` seconds pass."""
         self._value.advance(dt)
@@ -114,6 +119,11 @@ class TurnChannel:
     def turn(self, angles: tuple[float, ...], fade: float) -> None:
         """Turn to ``angles`` in radians."""
         self.angles.move(angles, fade)
+
+    @property
+    def targets(self) -> dict[str, float]:
+        """The angle in radians that each parameter goes to."""
+        return {NAMES[place]: angle for place, angle in zip(self._places, self.angles.target.tolist(), strict=True)}
 
     def advance(self, dt: float) -> None:
         """Let ``dt`` seconds pass."""

@@ -89,6 +89,12 @@ class Camera:
         distance = np.clip(self.distance / check_range("factor", factor, 0.1, 10.0), 0.15, 10.0)
         return replace(self, eye=tuple(np.add(self.target, self._arm * (distance / self.distance))))
 
+    def panned(self, right: float, up: float) -> Camera:
+        """The camera and its target moved sideways and upwards in the picture, metres."""
+        across, upright = self.view()[:2, :3]
+        way = check_finite("right", right) * across + check_finite("up", up) * upright
+        return replace(self, eye=tuple(np.add(self.eye, way)), target=tuple(np.add(self.target, way)))
+
 
 def _from(
     target: tuple[float, float, float], heading: float, height: float, distance: float

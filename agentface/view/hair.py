@@ -1,43 +1,30 @@
-"""Hair of the head: where it begins, a surface that covers the scalp, and fine hairs along its edge."""
+"""Hair of the head: where it begins, where it is rooted, and the dark layer on the scalp below the strands."""
 
 from __future__ import annotations
+
+from dataclasses import dataclass
 
 import numpy as np
 
 from agentface.anatomy.model import HeadModel
-from agentface.conventions import Doubles, Floats
+from agentface.conventions import Doubles, Floats, Indices
 from agentface.view.anchored import Anchored
+from agentface.view.hull import spread_over
 from agentface.view.look import HairLook
 from agentface.view.refine import refine, vertex_normals
-from agentface.view.ribbons import Hairs, Roots, unit_rows
+from agentface.view.ribbons import unit_rows
 
 # The hairline over the azimuth about the head's vertical axis: 0 the forehead, 180 the nape; heights over the eyes
 # in distances between the pupils.
-_AZIMUTH_DEG = (0, 12, 24, 32, 38, 43, 47, 51, 55, 59, 63, 67, 84, 90, 97, 105, 118, 150, 180)
+_AZIMUTH_DEG = (0, 12, 24, 32, 38, 43, 47, 51, 55, 59, 63, 67, 72, 84, 90, 97, 105, 118, 150, 180)
 _HEIGHT = (
-    1.0,
-    1.0,
-    0.985,
-    0.94,
-    0.83,
-    0.64,
-    0.40,
-    0.10,
-    -0.22,
-    -0.38,
-    -0.10,
-    0.12,
-    0.12,
-    -0.12,
-    -0.50,
-    -0.85,
-    -1.05,
-    -1.18,
-    -1.22,
-)
+    1.0, 1.0, 0.985, 0.95, 0.86, 0.70, 0.52, 0.26, -0.06, -0.28,
+    -0.36, -0.36, -0.36, -0.36, -0.40, -0.56, -0.85, -1.05, -1.18, -1.22,
+)  # fmt: skip
 _AXIS_Z = -0.69
-_BAND = 0.010
-_EDGE_HAIRS = {"tied": 1700, "cropped": 0, "none": 0}
+_SOFT = 0.006
+"""Metres over which hair grows denser behind the hairline."""
+_CAP_THICKNESS = {"cropped": 0.0018, "swept": 0.0010, "bob": 0.0010, "bun": 0.0010}
 
 
 class Hairline:
@@ -52,36 +39,77 @@ class Hairline:
         self._turns, self._heights = turns, np.convolve(padded, np.hanning(11)[1:-1] / np.hanning(11).sum(), "valid")
 
     def behind(self, points: Floats | Doubles) -> Doubles:
-        """``(N,)`` metres above the hairline at each point ``(N, 3)`` of the head; negative on the face."""
+        """``(N,)`` metres behind the hairline at each point ``(N, 3)`` of the head; negative on face and ears."""
         turn = np.degrees(np.arctan2(np.abs(points[:, 0]), points[:, 2] - _AXIS_Z * self.unit))
         height = np.interp(turn, self._turns, self._heights)
         # the forehead's part is fixed by the landmark, the rest by the size of the face
-        return np.asarray(points[:, 1] - np.where(height > 0, height * self.top, height * self.unit))
+        above = points[:, 1] - np.where(height > 0, height * self.top, height * self.unit)
+        y, z = points[:, 1] / self.unit + 0.40, points[:, 2] / self.unit + 0.24
+        off_ear = (np.hypot(y / 0.54, (z + 0.25 * y) / 0.40) - 1) * 0.42 * self.unit
+        return np.asarray(np.minimum(above, off_ear))
 
     def over(self, model: HeadModel) -> Doubles:
-        """``(V,)`` metres behind the hairline for the vertices of the skin; ears stay free."""
-        _, y, z = model.vertices.T / self.unit
-        ear = model.material[:, 3] * np.clip((0.23 - y) / 0.19, 0, 1) * np.clip((z + 0.72) / 0.12, 0, 1)
-        return np.asarray(self.behind(model.vertices) - 0.06 * ear)
+        """``(V,)`` metres behind the hairline for the vertices of the skin."""
+        return self.behind(model.vertices)
 
 
-def knot_of(model: HeadModel) -> Doubles:
-    """Where tied hair runs to: behind the back of the head."""
-    return np.array([0.0, 0.30 * model.landmarks.eye_separation, float(model.vertices[:, 2].min()) - 0.022])
+@dataclass(frozen=True, slots=True)
+class HairRoots:
+    """Places on the scalp: ``places`` and ``normals`` ``(N, 3)``, ``depth (N,)`` metres behind the hairline."""
+
+    places: Doubles
+    normals: Doubles
+    depth: Doubles
+
+    @classmethod
+    def drawn(
+        cls, model: HeadModel, normals: Floats, line: Hairline, count: int, rng: np.random.Generator
+    ) -> HairRoots:
+        """``count`` roots spread over the scalp, fewer and fewer towards the hairline."""
+        over = line.over(model)
+        triangles = model.triangles[over[model.triangles].max(1) > -0.02]
+        drawn, weights = spread_over(model.vertices, triangles, 3 * count, rng)
+        corners = triangles[drawn]
+        places = (model.vertices[corners] * weights[..., None]).sum(1)
+        depth = line.behind(places)
+        # a hairline is not a line
+        depth += 0.0020 * _wave(places * 190.0) + 0.0012 * _wave(places * 520.0)
+        kept = np.flatnonzero(depth > _SOFT * (rng.random(len(depth)) ** 1.5 - 0.35))[:count]
+        shown = unit_rows((normals[corners[kept]] * weights[kept][..., None]).sum(1))
+        return cls(places[kept], shown, depth[kept])
+
+    def __len__(self) -> int:
+        return len(self.depth)
+
+
+def hidden(model: HeadModel, line: Hairline, look: HairLook) -> Doubles:
+    """``(V,)`` 0..1: how much hair hides each vertex of the skin, on the scalp and behind hair that falls over it."""
+    scalp = np.clip((line.over(model) + 0.003) / 0.014, 0, 1)
+    if look.style != "bob":
+        return np.asarray(scalp)
+    y, z = model.vertices[:, 1], model.vertices[:, 2]
+    bottom = look.length * float(model.landmarks["menton"][1])
+    behind = np.clip((0.05 * line.unit - z) / (0.35 * line.unit), 0, 1) * np.clip((y - bottom) / 0.03, 0, 1)
+    return np.maximum(scalp, 0.9 * behind * (y < 0.6 * line.unit))
+
+
+def _wave(points: Doubles) -> Doubles:
+    x, y, z = points.T
+    return np.asarray(np.sin(x + 1.7 * np.sin(y)) * np.cos(z + 1.3 * np.sin(x)))
 
 
 def scalp_cap(model: HeadModel, line: Hairline, look: HairLook) -> Anchored:
-    """The hair as one surface: the scalp twice refined and lifted, thin at the hairline.
+    """What one sees between the strands: the scalp twice refined and lifted, ending softly at the hairline.
 
-    Material: strand, place along it, depth behind the hairline 0..1, ambient light.
+    Material: depth behind the hairline 0..1, ambient light, two spare.
     """
-    behind, behind_plain = line.over(model), line.behind(model.vertices)
-    chosen = (behind[model.triangles].max(1) > -0.006) & (model.vertices[model.triangles, 1].min(1) > -0.095)
+    over = line.over(model)
+    chosen = over[model.triangles].max(1) > -0.012
     used, local = np.unique(model.triangles[chosen], return_inverse=True)
-    triangles = local.reshape(-1, 3).astype(np.int32)
+    triangles: Indices = local.reshape(-1, 3).astype(np.int32)
     all_normals = vertex_normals(model.vertices, model.triangles)
     places, normals = model.vertices[used], all_normals[used]
-    light = np.column_stack([model.shade[used, 0], line.over(model)[used] - behind_plain[used]]).astype(np.float32)
+    light = model.shade[used, :1]
     anchors = used.astype(np.int32)[:, None]
     for _ in range(2):
         mesh = refine(triangles, len(places))
@@ -89,64 +117,9 @@ def scalp_cap(model: HeadModel, line: Hairline, look: HairLook) -> Anchored:
         normals = unit_rows(mesh.mean(normals)).astype(np.float32)
         light, triangles = mesh.mean(light), mesh.triangles
         anchors = np.concatenate([anchors[mesh.ends[:, 0]], anchors[mesh.ends[:, 1]]], axis=1)
-    depth = line.behind(places) + light[:, 1]
-    lifted = places + normals * _thickness(places, depth, look.style)[:, None].astype(np.float32)
-    away = lifted - knot_of(model)
-    strand = np.arctan2(away[:, 0], away[:, 1] + 0.03)
-    along = np.linalg.norm(away, axis=1) * 10
-    material = np.column_stack(
-        [strand, along, np.clip((depth + 0.002) / 0.030, 0, 1), np.clip(1.3 * light[:, 0], 0, 1)]
-    )
-    return Anchored(lifted, vertex_normals(lifted, triangles), triangles, anchors, material.astype(np.float32))
-
-
-def _thickness(places: Floats, depth: Doubles, style: str) -> Doubles:
-    """How far the hair stands off the scalp, metres."""
-    if style == "cropped":
-        return np.asarray(0.0004 + 0.0042 * np.clip(depth / 0.030, 0, 1) ** 0.8)
-    back = np.clip((0.03 - places[:, 2]) / 0.12, 0, 1)
-    return np.asarray(0.0008 + 0.0100 * np.clip(depth / 0.045, 0, 1) ** 0.7 * (0.65 + 0.45 * back))
-
-
-def edge_hairs(model: HeadModel, normals: Floats, line: Hairline, look: HairLook, rng: np.random.Generator) -> Hairs:
-    """Fine hairs along the hairline, that soften the edge of the surface."""
-    count = _EDGE_HAIRS[look.style]
-    # over the forehead and down the temples; the surface alone ends softly enough elsewhere
-    near = (
-        (np.abs(line.over(model)) < 2.5 * _BAND) & (model.vertices[:, 2] > 0) & (model.vertices[:, 1] > 0.3 * line.unit)
-    )
-    chosen = model.triangles[near[model.triangles].all(1)]
-    a, b, c = (model.vertices[chosen[:, corner]] for corner in range(3))
-    area = np.linalg.norm(np.cross(b - a, c - a), axis=1)
-    drawn = rng.choice(len(chosen), 8 * count, p=area / area.sum())
-    u, v = np.sqrt(rng.random(8 * count)), rng.random(8 * count)
-    weights = np.stack([1 - u, u * (1 - v), u * v], axis=1)
-    places = (model.vertices[chosen[drawn]] * weights[..., None]).sum(1)
     depth = line.behind(places)
-    kept = np.flatnonzero((depth > -0.15 * _BAND - 0.25 * _BAND * rng.random(8 * count) ** 2) & (depth < 0.8 * _BAND))[
-        :count
-    ]
-    roots = Roots(chosen[drawn[kept]], weights[kept].astype(np.float32))
-    places, n = places[kept], roots.frames(model.vertices, normals)[1][:, :, 2]
-    bends, tips = _combed(model, places, n, look.style, rng)
-    shade = np.asarray(look.colour) * (0.5 + 0.9 * rng.random((len(kept), 1)))
-    paint = np.column_stack([shade, np.full(len(kept), 0.75)])
-    radii = 0.00013 + 0.00010 * rng.random(len(kept))
-    return Hairs.grown(roots, (model.vertices, normals), bends, tips, radii, paint)
-
-
-def _combed(
-    model: HeadModel, places: Doubles, n: Doubles, style: str, rng: np.random.Generator
-) -> tuple[Doubles, Doubles]:
-    """Control points of hairs at ``places`` with the skin's normals ``n``."""
-    count = len(places)
-    flow = knot_of(model) - places
-    flow = unit_rows(flow - n * (flow * n).sum(1, keepdims=True))
-    if style == "cropped":
-        across = unit_rows(rng.normal(size=(count, 3)))
-        length = 0.0035 + 0.002 * rng.random((count, 1))
-        return 0.5 * length * (n + 0.3 * across), length * (0.55 * n + 0.25 * flow + 0.6 * across)
-    across = np.cross(n, flow) * rng.normal(0, 0.20, (count, 1))
-    length = 0.018 + 0.020 * rng.random((count, 1))
-    lift = 0.16 + 0.14 * rng.random((count, 1))
-    return length * (0.5 * flow + lift * n), length * (flow + across + 0.8 * lift * n)
+    rise = 0.0003 + _CAP_THICKNESS[look.style] * np.clip(depth / 0.020, 0, 1)
+    lifted = places + normals * rise[:, None].astype(np.float32)
+    ones = np.ones(len(places))
+    material = np.column_stack([np.clip((depth + 0.001) / 0.016, 0, 1), np.clip(1.3 * light[:, 0], 0, 1), ones, ones])
+    return Anchored(lifted, vertex_normals(lifted, triangles), triangles, anchors, material.astype(np.float32))

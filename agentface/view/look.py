@@ -8,7 +8,8 @@ from typing import Annotated, Literal
 from pydantic import Field
 
 from agentface.anatomy.model import HeadModel
-from agentface.config import Table, load
+from agentface.config import Document, Table
+from agentface.errors import UnknownNameError
 
 _Fraction = Annotated[float, Field(ge=0, le=1)]
 _Colour = Annotated[list[_Fraction], Field(min_length=3, max_length=3)]
@@ -35,10 +36,14 @@ class EyesLook(Table):
 class HairLook(Table):
     """Hair of the head, brows and lashes; ``hairline`` is its height as a part of the landmark hairline_middle's."""
 
-    style: Literal["none", "cropped", "tied"]
+    style: Literal["none", "cropped", "swept", "bob", "bun"]
     colour: _Colour
     grey: _Fraction
     hairline: Annotated[float, Field(ge=0.7, le=1.4)]
+    parting: Annotated[float, Field(ge=-1, le=1)]
+    length: Annotated[float, Field(ge=0.5, le=2)]
+    volume: Annotated[float, Field(ge=0.3, le=2)]
+    curl: _Fraction
     brow_colour: _Colour
     brow_density: Annotated[float, Field(ge=0, le=2)]
     lash_length_mm: Annotated[float, Field(ge=0, le=14)]
@@ -76,11 +81,39 @@ class Look(Table):
     exposure: Annotated[float, Field(gt=0, le=10)]
 
 
-def load_look(model: HeadModel) -> Look:
-    """The look in the model's folder; raises DataError with every fault of the file."""
-    return read_look(model.folder / "look.yaml")
+def load_look(model: HeadModel, look: str | Path | None = None) -> Look:
+    """The look ``look`` of a face: a name in its folder ``looks``, a path, or None for its own ``look.yaml``.
+
+    Raises UnknownNameError for neither a name nor a file, DataError with every fault of the file.
+    """
+    if look is None:
+        return read_look(model.folder / "look.yaml")
+    if str(look) in look_names(model):
+        return read_look(_looks(model) / f"{look}.yaml")
+    given = Path(look).expanduser()
+    if given.suffix in (".yaml", ".yml") or given.exists():
+        return read_look(given)
+    raise UnknownNameError("look, or a path to a look's file", str(look), look_names(model))
+
+
+def look_names(model: HeadModel) -> tuple[str, ...]:
+    """The names of the looks in the face's folder, besides its own."""
+    return tuple(sorted(path.stem for path in _looks(model).glob("*.yaml")))
+
+
+def _looks(model: HeadModel) -> Path:
+    return model.folder / "looks"
 
 
 def read_look(path: Path) -> Look:
     """The look in a file; raises DataError with every fault of the file."""
-    return load(path, Look)
+    document = Document(path)
+    look = document.collect(Look)
+    if look is not None:
+        for name in ("key", "fill", "rim_left", "rim_right"):
+            towards = getattr(look.lights, name).towards
+            if not any(towards):
+                document.fault(("lights", name, "towards"), "a direction", repr(towards))
+    document.check()
+    assert look is not None, "a document without faults is parsed"  # noqa: S101 - for the type checker
+    return look

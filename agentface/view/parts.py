@@ -13,12 +13,15 @@ from agentface.view.refine import vertex_normals
 
 
 class RigidPart:
-    """A static mesh on the GPU: position, normal and material of each vertex."""
+    """A static mesh on the GPU: position, normal and material of each vertex, and where it lies on a tooth or shirt."""
 
-    def __init__(self, context: Any, program: Any, vertices: Floats, triangles: Indices, material: Floats) -> None:
+    def __init__(
+        self, context: Any, program: Any, vertices: Floats, triangles: Indices, material: Floats, detail: Floats
+    ) -> None:
         self.program = program
-        rows = np.concatenate([vertices, vertex_normals(vertices, triangles), material], axis=1).astype(np.float32)
-        layout = [(context.buffer(rows.tobytes()), "3f 3f 4f", "place", "facing", "material")]
+        fields = [vertices, vertex_normals(vertices, triangles), material, detail]
+        rows = np.concatenate(fields, axis=1).astype(np.float32)
+        layout = [(context.buffer(rows.tobytes()), "3f 3f 4f 2f", "place", "facing", "material", "detail")]
         self.array = context.vertex_array(program, layout, context.buffer(triangles.astype(np.int32).tobytes()))
 
     def draw(self, moved: Floats) -> None:

@@ -15,7 +15,8 @@ from agentface.view.brows import BrowLine, brow_hairs, lash_hairs
 from agentface.view.camera import Camera, named_view
 from agentface.view.context import compile_program, open_context
 from agentface.view.frame import pack_frame, shadow_projection
-from agentface.view.hair import Hairline, edge_hairs, knot_of, scalp_cap
+from agentface.view.hair import Hairline, hidden
+from agentface.view.head_hair import HeadHair
 from agentface.view.look import Look, load_look
 from agentface.view.noise import SIDE, noise_volume
 from agentface.view.parts import Eyeball, RigidPart
@@ -25,12 +26,13 @@ from agentface.view.shadow import KeyShadow
 from agentface.view.shirt import shirt
 from agentface.view.skin import Skin, SkinFields
 from agentface.view.targets import Targets
+from agentface.view.teeth import crown_places
+from agentface.view.wrinkles import WrinkleAtlas
 
 QUALITIES: dict[str, int] = {"fast": 0, "portrait": 4}
 """Name of a quality: samples a pixel (0: one, not resolved)."""
 SHADOW_TAPS = {"fast": 0, "portrait": 16}
 """Looks into the key light's depths a pixel; 0: the shadow of the face at rest, by vertex."""
-HAIR_SHARE = {"fast": 0.5, "portrait": 1.0}
 LARGEST_SIDE = 8192
 _SEED = 20
 _FRAME_BYTES = 3 * 64 + 11 * 16
@@ -57,7 +59,8 @@ class Renderer:
         rng = np.random.default_rng(_SEED)
         self._noise = self.context.texture3d((SIDE,) * 3, 4, noise_volume(rng).tobytes())
         self._programs = {
-            name: self._compile(f"{name}.vert.glsl", f"{name}.frag.glsl") for name in ("skin", "part", "eye", "ribbon")
+            name: self._compile(f"{name}.vert.glsl", f"{name}.frag.glsl")
+            for name in ("skin", "part", "eye", "ribbon", "strand")
         }
         self._programs["lining"] = self._compile("anchored.vert.glsl", "part.frag.glsl")
         self._programs["cap"] = self._compile("anchored.vert.glsl", "cap.frag.glsl")
@@ -65,6 +68,7 @@ class Renderer:
         self._develop = self._compile("screen.vert.glsl", "develop.frag.glsl")
         self._screen = self.context.vertex_array(self._develop, [])
         self._fields = SkinFields(self.context, len(model.vertices))
+        self._wrinkles = WrinkleAtlas(self.context, model)
         normals = vertex_normals(model.vertices, model.triangles)
         self._shadow = KeyShadow(self.context, self._depth, model)
         lit, covered = self._lit_at_rest(normals), self._covered()
@@ -83,13 +87,9 @@ class Renderer:
             HairArray(self.context, self._programs["ribbon"], brow_hairs(model, normals, hair, rng), 0.35),
             HairArray(self.context, self._programs["ribbon"], lash_hairs(model, normals, hair, rng), 0.1),
         ]
-        self._cap = self._edge = None
+        self._head_hair: HeadHair | None = None
         if hair.style != "none":
-            line = Hairline(model, hair.hairline)
-            self._cap = AnchoredArray(self.context, self._programs["cap"], scalp_cap(model, line, hair), model.vertices)
-            edge = edge_hairs(model, normals, line, hair, rng)
-            if len(edge):
-                self._edge = HairArray(self.context, self._programs["ribbon"], edge, 0.5)
+            self._head_hair = HeadHair(self.context, self._programs["cap"], self._programs["strand"], model, hair)
         ring = model.lips.rings[0]
         self._lips = [half[len(half) // 2 - 2 : len(half) // 2 + 3] for half in (ring.upper, ring.lower)]
         self._set_look()
@@ -130,14 +130,18 @@ class Renderer:
         self._fields.update(geometry)
         self._fields.texture.use(0)
         self._noise.use(1)
+        self._wrinkles.texture.use(3)
         if SHADOW_TAPS[quality]:
             self._shadow.draw()
         self._shadow.use(2)
-        _set(self._programs["skin"], {"shadow_taps": SHADOW_TAPS[quality]})
+        wrinkled = self._wrinkles.update(geometry.wrinkle_levels)
+        _set(self._programs["skin"], {"shadow_taps": SHADOW_TAPS[quality], "wrinkled": wrinkled})
         targets.scene.use()
         targets.scene.clear(0.0, 0.0, 0.0, 0.0)
         context.enable_only(moderngl.DEPTH_TEST)
         self._draw_solids(geometry, quality)
+        if self._head_hair is not None:
+            self._head_hair.draw_solid(quality)
         context.enable_only(moderngl.DEPTH_TEST | moderngl.BLEND)
         context.blend_func = (
             moderngl.SRC_ALPHA,
@@ -145,12 +149,10 @@ class Renderer:
             moderngl.ONE,
             moderngl.ONE_MINUS_SRC_ALPHA,
         )
-        if self._cap is not None:
-            self._cap.draw()
         for hairs in self._hairs:
             hairs.draw()
-        if self._edge is not None:
-            self._edge.draw(HAIR_SHARE[quality])
+        if self._head_hair is not None:
+            self._head_hair.draw_soft(quality, targets.scene)
         if targets.samples:
             context.copy_framebuffer(targets.resolved, targets.scene)
         context.enable_only(moderngl.NOTHING)
@@ -175,7 +177,13 @@ class Renderer:
 
     def _compile(self, vertex: str, fragment: str | None) -> Any:
         program = compile_program(self.context, vertex, fragment)
-        for name, slot in (("skin_fields", 0), ("noise_volume", 1), ("light", 0), ("key_depth", 2)):
+        for name, slot in (
+            ("skin_fields", 0),
+            ("noise_volume", 1),
+            ("light", 0),
+            ("key_depth", 2),
+            ("wrinkle_atlas", 3),
+        ):
             if name in program:
                 program[name].value = slot
         if "Frame" in program:
@@ -186,7 +194,9 @@ class Renderer:
         mesh = self.model.parts[name]
         material = mesh.attributes["_MATERIAL"].astype(np.float32) / np.float32(255)
         material[:, 3] = 0.0
-        return RigidPart(self.context, self._programs["part"], mesh.attributes["POSITION"], mesh.triangles, material)
+        positions = mesh.attributes["POSITION"]
+        detail = crown_places(positions, mesh.triangles, material[:, 0])
+        return RigidPart(self.context, self._programs["part"], positions, mesh.triangles, material, detail)
 
     def _mouth_light(self, geometry: FaceGeometry) -> float:
         """The part of the light that reaches the teeth: all through a mouth open by a finger, little through a slit."""
@@ -212,23 +222,22 @@ class Renderer:
         hair, model = self.look.hair, self.model
         covered = 0.55 * hair.brow_density * BrowLine(model).density(model.vertices)
         if hair.style != "none":
-            covered = np.maximum(covered, np.clip((Hairline(model, hair.hairline).over(model) + 0.003) / 0.012, 0, 1))
+            covered = np.maximum(covered, hidden(model, Hairline(model, hair.hairline), hair))
         return np.asarray(np.clip(covered, 0, 1), np.float32)
 
     def _shirt(self) -> RigidPart:
-        vertices, triangles = shirt(self.model)
+        vertices, triangles, weave = shirt(self.model)
         material = np.tile(np.array([0, 0, 0, 1], np.float32), (len(vertices), 1))
-        return RigidPart(self.context, self._programs["part"], vertices, triangles, material)
+        return RigidPart(self.context, self._programs["part"], vertices, triangles, material, weave)
 
     def _set_look(self) -> None:
         look, front = self.look, float(self.model.landmarks["upper_lip_middle"][2])
         values: dict[str, dict[str, Any]] = {
             "skin": {"skin_tone": look.skin.tone, "lip_tint": look.skin.lips, "shine": look.skin.shine,
-                     "mouth_front": front, "hair_colour": look.hair.colour},
+                     "mouth_front": front, "hair_colour": [0.45 * part for part in look.hair.colour],
+                     "atlas_height": self._wrinkles.height},
             "part": {"mouth_front": front, "cloth": look.cloth},
             "lining": {"mouth_front": front, "mouth_light": 1.0, "cloth": look.cloth},
-            "cap": {"hair_colour": look.hair.colour, "knot": knot_of(self.model).tolist(), "grey": look.hair.grey,
-                    "cropped": float(look.hair.style == "cropped")},
             "eye": {"iris_inner": look.eyes.iris_inner, "iris_outer": look.eyes.iris_outer, "sclera": look.eyes.sclera,
                     "pupil_radius": look.eyes.pupil, "iris_radius": 0.445},
         }  # fmt: skip

@@ -12,8 +12,8 @@ _SHOULDER = (0.215, 0.105)
 _DROP = 0.22
 
 
-def shirt(model: HeadModel) -> tuple[Floats, Indices]:
-    """Vertices ``(N, 3)`` metres and triangles."""
+def shirt(model: HeadModel) -> tuple[Floats, Indices, Floats]:
+    """Vertices ``(N, 3)`` metres, triangles, and ``(N, 2)``: the turn from the side 0..pi, metres from the collar."""
     chin = float(model.landmarks["menton"][1])
     neck = model.vertices[
         (model.vertices[:, 1] < chin - 0.008) & (model.vertices[:, 2] < model.landmarks["menton"][2] - 0.025)
@@ -37,7 +37,10 @@ def shirt(model: HeadModel) -> tuple[Floats, Indices]:
     j = (i + 1) % _AROUND
     quads = [np.stack([i, i + _AROUND, j], axis=1) + row * _AROUND for row in range(len(rows) - 1)]
     quads += [np.stack([j, i + _AROUND, j + _AROUND], axis=1) + row * _AROUND for row in range(len(rows) - 1)]
-    return vertices, np.concatenate(quads)[:, ::-1].astype(np.int32)
+    steps = np.linalg.norm(np.diff(np.stack(rows), axis=0), axis=2).mean(1)
+    away = np.repeat(np.concatenate([[0.0, *np.cumsum(steps)]]) - steps[0], _AROUND)
+    weave = np.stack([np.tile(np.minimum(turn, 2 * np.pi - turn), len(rows)), away], axis=1)
+    return vertices, np.concatenate(quads)[:, ::-1].astype(np.int32), weave.astype(np.float32)
 
 
 def uncovered(model: HeadModel) -> Indices:

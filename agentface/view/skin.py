@@ -31,14 +31,14 @@ class SkinFields:
     def update(self, geometry: FaceGeometry) -> None:
         """Upload a frame; raises InvalidValueError for a geometry of another mesh."""
         expected = (self.count, 3)
-        for name in ("vertices", "normals"):
+        for name in ("vertices", "smooth_normals"):
             if getattr(geometry, name).shape != expected:
                 raise InvalidValueError(
                     f"geometry.{name}", f"an array of shape {expected}", getattr(geometry, name).shape
                 )
         self._texels[0, : self.count, :3] = geometry.vertices
         self._texels[0, : self.count, 3] = geometry.wrinkles
-        self._texels[1, : self.count, :3] = geometry.normals
+        self._texels[1, : self.count, :3] = geometry.smooth_normals
         self.texture.write(self._texels)
 
 

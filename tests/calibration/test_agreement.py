@@ -16,15 +16,20 @@ from agentface.errors import DataError, OutputError
 from agentface.resources import face_names
 
 DOCUMENT = Path(__file__).parents[2] / "docs" / "calibration.md"
-UNITS = {1, 2, 4, 6, 9, 10, 12, 15, 16, 17, 20}
+FITTED = {1, 2, 4, 6, 9, 10, 12, 15, 16, 17, 20}
+OTHERS = {5, 7, 18, 22, 23, 24, 25, 26, 27, 28, 43, 45}
+"""Action units of lids, lips and jaw."""
 
 
 @pytest.mark.parametrize("face", face_names())
 def test_every_face_agrees_with_its_artists(face):
     rows = measure(load_model(face), load_action_units())
-    assert rows.keys() == UNITS
-    assert np.mean([row.cosine for row in rows.values()]) >= 0.85
-    for number, row in rows.items():
+    assert rows.keys() == FITTED | OTHERS
+    assert np.mean([rows[number].cosine for number in FITTED]) >= 0.85
+    for number in OTHERS:
+        assert rows[number].cosine >= 0.6, number
+    for number in FITTED:
+        row = rows[number]
         assert row.cosine >= 0.7, number
         assert 0.7 <= row.peak_ratio <= 1.4, number
         assert row.region == row.artists_region, number

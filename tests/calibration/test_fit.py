@@ -14,7 +14,7 @@ from agentface.calibration.calibrate import anatomy_file
 from agentface.calibration.fit import Fitter, groups
 from agentface.deform.combine import parallel
 
-UNIT = ActionUnit(15, "", {"depressor_anguli_oris": 1.0}, ("known",), 1.0)
+UNIT = ActionUnit(15, "", {"depressor_anguli_oris": 1.0}, {"known": 1.0}, 1.0)
 
 
 @pytest.fixture(scope="module")

@@ -137,7 +137,7 @@ def test_pressing_flattens_the_lips_and_puckering_narrows_the_mouth(face):
         return points[ring.upper[0], 0] - points[ring.upper[-1], 0]
 
     assert height(press) < 0.7 * height(rest)
-    assert width(press) == pytest.approx(width(rest), rel=0.03)
+    assert width(rest) <= width(press) < 1.12 * width(rest)
     assert width(pucker) < 0.85 * width(rest)
     assert pucker[red[0], 2] > rest[red[0], 2] + 0.002
 

@@ -55,7 +55,7 @@ def test_every_rule_table_is_gentle(rulebase: RuleBase):
         "anger": (
             "corrugator_supercilii",
             "levator_palpebrae",
-            "orbicularis_oculi_orbitalis",
+            "orbicularis_oculi_palpebralis",
             "orbicularis_oris_press",
         ),
         "fear": ("frontalis_medialis", "frontalis_lateralis", "corrugator_supercilii", "levator_palpebrae", "risorius"),

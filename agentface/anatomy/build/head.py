@@ -10,6 +10,7 @@ import numpy as np
 
 from agentface.anatomy.build import mouth_parts
 from agentface.anatomy.build.identity import Recipe, close_lips, person
+from agentface.anatomy.build.jaw import JawShares, jaw_shares
 from agentface.anatomy.build.partition import Loops, base_labels, find_loops, order_by_region, partition, ranges
 from agentface.anatomy.build.source import BaseMesh
 from agentface.anatomy.build.thin import Thinner
@@ -175,7 +176,7 @@ class Head:
     origin: Doubles
 
 
-def build_head(topology: HeadTopology, recipe: Recipe) -> Head:
+def build_head(topology: HeadTopology, recipe: Recipe, jaw_table: JawShares) -> Head:
     """The head of the person that ``recipe`` describes."""
     mesh, skin = topology.mesh, topology.skin
     base = close_lips(person(mesh, recipe), skin, topology.loops, mesh.positions)
@@ -187,7 +188,8 @@ def build_head(topology: HeadTopology, recipe: Recipe) -> Head:
     ear = skin.place(base)[topology.landmarks["ear_front_l"]["vertices"]][0]
     origin = np.array([0.0, centre[1], ear[2]])
     shapes = {name: skin.place(mesh.face_unit(name)) for name in mesh.face_units()}
-    jaw = _jaw_weights(skin.place(base) - origin, shapes["jawOpen"], *hinge(base, mesh, origin))
+    guide = _artists_jaw(skin.place(base) - origin, shapes["jawOpen"], *hinge(base, mesh, origin))
+    jaw = jaw_shares(topology, skin.place(base), guide, jaw_table, unit=2.0 * centre[0])
     meshes = {
         "skin": MeshArrays(
             skin.triangles,
@@ -239,8 +241,8 @@ def hinge(base: Doubles, mesh: BaseMesh, origin: Doubles) -> tuple[Doubles, floa
     return np.array([0.0, *pivot]), float(np.arctan2(turn[1, 0], turn[0, 0]))
 
 
-def _jaw_weights(points: Doubles, opened: Doubles, pivot: Doubles, angle: float) -> Doubles:
-    """How far each skin vertex follows the jaw, 0..1: the part of the artists' jawOpen along the rigid rotation."""
+def _artists_jaw(points: Doubles, opened: Doubles, pivot: Doubles, angle: float) -> Doubles:
+    """How far each skin vertex follows the jaw, 0..1, in the artists' jawOpen: its part along the rigid rotation."""
     arm = points - pivot
     turned = arm.copy()
     turned[:, 1] = np.cos(angle) * arm[:, 1] - np.sin(angle) * arm[:, 2]

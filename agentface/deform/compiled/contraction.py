@@ -36,7 +36,7 @@ _TINY = _F(1e-20)
 _Q1, _Q2, _Q3 = _F(-0.2336987033), _F(0.0199532354), _F(-0.0008582032)
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def slice_steps(contractions: Doubles, step: float, parts: Floats) -> int:
     """Fills ``parts (S, M)`` with slices of at most ``step``; returns the first contraction not in 0..1, or -1."""
     for muscle in range(contractions.shape[0]):
@@ -49,7 +49,7 @@ def slice_steps(contractions: Doubles, step: float, parts: Floats) -> int:
     return -1
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def spread(contractions: Doubles, step: float, parts: Floats) -> int:
     """Fills the diagonal of ``parts (M, M)``: one muscle a step; returns as :func:`slice_steps` does."""
     for muscle in range(contractions.shape[0]):
@@ -60,7 +60,7 @@ def spread(contractions: Doubles, step: float, parts: Floats) -> int:
     return -1
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def contract(
     rest: Floats,
     home: Floats,
@@ -121,7 +121,7 @@ def contract(
                 out[row, 2] = lanes[2 * LANES + lane]
 
 
-@njit(cache=True, fastmath=True, error_model="numpy")
+@njit(cache=True, nogil=True, fastmath=True, error_model="numpy")
 def contract_block(
     home: Floats,
     block: int,

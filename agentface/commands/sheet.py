@@ -1,0 +1,96 @@
+"""``agentface sheet``: a contact sheet of emotions or poses."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+import numpy as np
+
+from agentface.commands.options import camera_option, face_options, make_face, quality_option, read_assignments, size
+
+if TYPE_CHECKING:
+    from agentface.parameters import FacePose
+
+    Poses = list[tuple[str, FacePose]]
+
+
+def _levels(_: click.Context, __: click.Parameter, value: str) -> list[float]:
+    try:
+        return [float(part) for part in value.split(",")]
+    except ValueError:
+        raise click.BadParameter(f"expected intensities like 0.25,0.5,1, got {value!r}") from None
+
+
+@click.command()
+@click.option("--emotions", metavar="NAME,...", help="Which emotions; all six when neither this nor --pose is given.")
+@click.option("--levels", default="0.25,0.5,0.75,1", callback=_levels, show_default=True, help="Their intensities.")
+@click.option("--pose", "poses", multiple=True, metavar="'LABEL: NAME=V, ...'", help="Emotions, muscles, or both.")
+@click.option("--columns", type=click.IntRange(1, 24), help="Pictures in a row; one row an emotion by default.")
+@click.option("--size", default="320x360", callback=size, metavar="WxH", show_default=True, help="Of one picture.")
+@quality_option
+@camera_option
+@click.option("-o", "--output", type=click.Path(path_type=Path), required=True, metavar="FILE.png")
+@face_options
+def sheet(
+    *,
+    emotions: str | None,
+    levels: list[float],
+    poses: tuple[str, ...],
+    columns: int | None,
+    size: tuple[int, int],
+    quality: str,
+    camera: str,
+    output: Path,
+    face: str,
+    deformer: str,
+) -> None:
+    """Write a picture of many pictures: emotions by intensity, or a list of poses, with labels.
+
+    \b
+    agentface sheet -o sheet.png
+    agentface sheet --emotions fear,surprise --levels 0.3,0.6,1 -o sheet.png
+    agentface sheet --pose 'kiss: orbicularis_oris_pucker=1' --pose 'sneer: disgust=0.4, jaw_open=0.1' -o sheet.png
+    """  # noqa: D301 - \b is click's mark of lines to keep
+    from rich.console import Console
+    from rich.progress import track
+
+    from agentface.figures.sheet import sheet as contact_sheet
+    from agentface.io.files import check_writable
+    from agentface.io.picture import check_picture_name, write_picture
+
+    check_picture_name(output)
+    check_writable(output)
+    shown: Poses = [_pose(text) for text in poses]
+    if emotions or not poses:
+        shown += _by_level(emotions, levels)
+    drawn = make_face(face, deformer, compiled=len(shown) > 4)
+    terminal = Console(stderr=True)
+    bar = track(shown, "drawing", console=terminal, transient=True, disable=not terminal.is_terminal)
+    panels = [(drawn.render(size, camera, quality, pose=pose), label, "") for label, pose in bar]
+    width = columns or (min(4, len(panels)) if poses else len(levels))
+    write_picture(output, np.asarray(contact_sheet(panels, width)))
+
+
+def _by_level(emotions: str | None, levels: Sequence[float]) -> Poses:
+    from agentface.emotion.inference import default_inference
+    from agentface.emotion.state import EMOTIONS, EmotionState
+
+    infer = default_inference()
+    names = [name.strip() for name in emotions.split(",")] if emotions else EMOTIONS
+    states = [(f"{name} {level:g}", EmotionState.of({name: level})) for name in names for level in levels]
+    return [(label, infer.pose(state)) for label, state in states]
+
+
+def _pose(text: str) -> tuple[str, FacePose]:
+    """The label and the pose that ``LABEL: NAME=V, ...`` describes; without a label it is its own."""
+    from agentface.emotion.inference import default_inference
+    from agentface.emotion.state import ALIASES, EMOTIONS, EmotionState
+
+    label, colon, given = text.partition(":")
+    values = read_assignments([given if colon else text])
+    felt = {name: value for name, value in values.items() if name.lower() in (*EMOTIONS, *ALIASES)}
+    pose = default_inference().pose(EmotionState.of(felt))
+    return label.strip(), pose.replace({name: value for name, value in values.items() if name not in felt})

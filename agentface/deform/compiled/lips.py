@@ -1,0 +1,84 @@
+"""The lips' loops; their numpy twins are in :mod:`agentface.deform.lips`."""
+
+from __future__ import annotations
+
+import numpy as np
+from numba import njit
+
+from agentface.conventions import Floats
+from agentface.deform.lip_surface import COLUMNS, ROWS
+from agentface.deform.lips import LipTables
+
+_CONTROLS = COLUMNS * ROWS
+_ZERO = np.float32(0.0)
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def contract(tables: LipTables, values: Floats, points: Floats) -> None:
+    """Orbicularis oris moves the control points and the skin at the patch's edge; as its twin."""
+    pucker, press = values[tables.parameters[0]], values[tables.parameters[1]]
+    if pucker == _ZERO and press == _ZERO:
+        return
+    beyond = max(0.0, (press - tables.roll_from) / (1.0 - tables.roll_from))
+    roll = np.float32(beyond * beyond)
+    start = tables.skin_count
+    moved = np.empty((_CONTROLS, 3), np.float32)
+    for i in range(_CONTROLS):
+        x, y = points[start + i, 0], points[start + i, 1]
+        across = pucker * (tables.shift[0, i, 0] + tables.pull[0, i] * (tables.target[0, i, 0] - x))
+        across += press * (tables.shift[1, i, 0] + tables.pull[1, i] * (tables.target[1, i, 0] - x))
+        across += roll * (tables.shift[2, i, 0] + tables.pull[2, i] * (tables.target[2, i, 0] - x))
+        up = pucker * (tables.shift[0, i, 1] + tables.pull[0, i] * (tables.target[0, i, 1] - y))
+        up += press * (tables.shift[1, i, 1] + tables.pull[1, i] * (tables.target[1, i, 1] - y))
+        up += roll * (tables.shift[2, i, 1] + tables.pull[2, i] * (tables.target[2, i, 1] - y))
+        ahead = pucker * tables.shift[0, i, 2] + press * tables.shift[1, i, 2] + roll * tables.shift[2, i, 2]
+        moved[i, 0], moved[i, 1], moved[i, 2] = across, up, ahead
+    for k in range(tables.rim.shape[0]):
+        row = tables.rim[k]
+        x, y, z = _ZERO, _ZERO, _ZERO
+        for j in range(16):
+            i, weight = tables.controls[row, j], tables.weight[row, j]
+            x += weight * moved[i, 0]
+            y += weight * moved[i, 1]
+            z += weight * moved[i, 2]
+        vertex = tables.patch[row]
+        points[vertex, 0] += x
+        points[vertex, 1] += y
+        points[vertex, 2] += z
+    for k in range(tables.skirt.shape[0]):
+        x, y, z = _ZERO, _ZERO, _ZERO
+        for j in range(4):
+            i, weight = tables.skirt_index[k, j], tables.skirt_weight[k, j]
+            x += weight * moved[i, 0]
+            y += weight * moved[i, 1]
+            z += weight * moved[i, 2]
+        vertex = tables.skirt[k]
+        points[vertex, 0] += x
+        points[vertex, 1] += y
+        points[vertex, 2] += z
+    for i in range(_CONTROLS):
+        points[start + i, 0] += moved[i, 0]
+        points[start + i, 1] += moved[i, 1]
+        points[start + i, 2] += moved[i, 2]
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def surface(tables: LipTables, points: Floats) -> None:
+    """The vertices of the patch take the surface's movement; as its twin."""
+    start = tables.skin_count
+    moved = np.empty((_CONTROLS, 3), np.float32)
+    for i in range(_CONTROLS):
+        moved[i, 0] = points[start + i, 0] - tables.control_rest[i, 0]
+        moved[i, 1] = points[start + i, 1] - tables.control_rest[i, 1]
+        moved[i, 2] = points[start + i, 2] - tables.control_rest[i, 2]
+    for row in range(tables.patch.shape[0]):
+        x, y, z = _ZERO, _ZERO, _ZERO
+        for j in range(16):
+            i, weight = tables.controls[row, j], tables.weight[row, j]
+            x += weight * moved[i, 0]
+            y += weight * moved[i, 1]
+            z += weight * moved[i, 2]
+        vertex, blend = tables.patch[row], tables.blend[row]
+        points[vertex, 0] += blend * (tables.rest[row, 0] + x - points[vertex, 0])
+        points[vertex, 1] += blend * (tables.rest[row, 1] + y - points[vertex, 1])
+        points[vertex, 2] += blend * (tables.rest[row, 2] + z - points[vertex, 2])

@@ -1,0 +1,152 @@
+"""Many faces at once: one model, a pose a face, on one thread or more."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass, fields
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from agentface.anatomy.model import HeadModel
+from agentface.conventions import Floats
+from agentface.deform import frame
+from agentface.deform.combine import STEP
+from agentface.deform.geometry import FaceGeometry
+from agentface.errors import InvalidValueError
+from agentface.parameters import COUNT, NAMES, VECTOR_MUSCLES
+
+_MUSCLES = slice(NAMES.index(VECTOR_MUSCLES[0]), NAMES.index(VECTOR_MUSCLES[-1]) + 1)
+_CHUNK = 8  # faces a worker takes at a time: a millisecond or two of work
+
+
+@dataclass(frozen=True, slots=True)
+class CrowdGeometry:
+    """B faces at one instant, in the model's axes and metres: :class:`FaceGeometry` with a row a face.
+
+    Attributes:
+        vertices: ``(B, V, 3)`` float32.
+        normals: ``(B, V, 3)`` float32.
+        wrinkles: ``(B, V)`` float32.
+        eye_rotations: ``(B, 2, 3, 3)`` float32.
+        jaw: ``(B, 4, 4)`` float32.
+        head: ``(B, 4, 4)`` float32.
+        smooth_normals: ``(B, V, 3)`` float32.
+        wrinkle_levels: ``(B, K)`` float32.
+    """
+
+    vertices: Floats
+    normals: Floats
+    wrinkles: Floats
+    eye_rotations: Floats
+    jaw: Floats
+    head: Floats
+    smooth_normals: Floats
+    wrinkle_levels: Floats
+
+    def __len__(self) -> int:
+        return len(self.vertices)
+
+    def face(self, index: int) -> FaceGeometry:
+        """One face of them; its arrays are parts of these."""
+        return FaceGeometry(**{field.name: getattr(self, field.name)[index] for field in fields(self)})
+
+    def first(self, count: int) -> CrowdGeometry:
+        """The first ``count`` faces; their arrays are parts of these."""
+        return CrowdGeometry(**{field.name: getattr(self, field.name)[:count] for field in fields(self)})
+
+
+class Crowd:
+    """Deforms many faces of one model by the muscles' parallel combination; compiled.
+
+    Every face is, bit for bit, what :class:`agentface.deform.pipeline.GeometricDeformer` makes of its pose.
+
+    Args:
+        model: the face they all have.
+        threads: how many work on them at once, 1 or more. They share the model's tables; a few faces at a time go to
+            whichever is free.
+
+    Raises:
+        InvalidValueError: for ``threads`` that is no number from 1 on.
+    """
+
+    def __init__(self, model: HeadModel, threads: int = 1) -> None:
+        from agentface.deform.blocks import pack
+        from agentface.deform.compiled import frame as kernels
+
+        if isinstance(threads, bool) or not isinstance(threads, int) or threads < 1:
+            raise InvalidValueError("threads", "a number from 1 on", threads)
+        self.model, self.threads = model, threads
+        self._kernels = kernels
+        self._tables, muscles = frame.prepare(model)
+        self._blocks = pack(self._tables.rest, muscles)
+        self._scratch = [self._new_scratch() for _ in range(threads)]
+        self._pool = ThreadPoolExecutor(threads, "agentface-crowd") if threads > 1 else None
+        self._geometry = self._new_geometry(0)
+
+    def deform(self, poses: npt.ArrayLike) -> CrowdGeometry:
+        """The faces in ``poses (B, COUNT)``, rows like ``FacePose.values``.
+
+        The result's arrays are overwritten by the next call; they grow with the largest crowd so far.
+
+        Raises:
+            InvalidValueError: for another shape, a value that is not finite, or a contraction outside 0..1.
+        """
+        values = _checked(poses)
+        if len(values) > len(self._geometry):
+            self._geometry = self._new_geometry(len(values))
+        geometry = self._geometry.first(len(values))
+        starts = iter(range(0, len(values), _CHUNK))
+        if self._pool is None or len(values) <= _CHUNK:
+            self._work(self._scratch[0], starts, values, geometry)
+        else:
+            jobs = [self._pool.submit(self._work, scratch, starts, values, geometry) for scratch in self._scratch]
+            for job in jobs:
+                job.result()
+        return geometry
+
+    def close(self) -> None:
+        """Ends the threads; a crowd that is not used any more does so by itself."""
+        if self._pool is not None:
+            self._pool.shutdown()
+
+    def _work(self, scratch: Any, starts: Iterator[int], values: Floats, geometry: CrowdGeometry) -> None:
+        """Takes chunk after chunk until none is left; every thread takes from the same ``starts``."""
+        faces = self._kernels.Faces(**{name: getattr(geometry, name) for name in self._kernels.Faces._fields})
+        for start in starts:
+            end = min(start + _CHUNK, len(values))
+            self._kernels.deform(self._tables, self._blocks, values, start, end, scratch, faces)
+
+    def _new_scratch(self) -> Any:
+        muscles, steps = len(VECTOR_MUSCLES), math.ceil(1.0 / STEP)
+        levels, parts = np.zeros(muscles), np.zeros((steps, muscles), np.float32)
+        return self._kernels.Scratch(levels, parts, self._tables.rest.copy())
+
+    def _new_geometry(self, count: int) -> CrowdGeometry:
+        vertices, trains = len(self.model.vertices), len(self._tables.wrinkles.parameters)
+        shapes = {
+            "vertices": (vertices, 3), "normals": (vertices, 3), "wrinkles": (vertices,), "eye_rotations": (2, 3, 3),
+            "jaw": (4, 4), "head": (4, 4), "smooth_normals": (vertices, 3), "wrinkle_levels": (trains,),
+        }  # fmt: skip
+        return CrowdGeometry(**{name: np.empty((count, *shape), np.float32) for name, shape in shapes.items()})
+
+
+def _checked(poses: npt.ArrayLike) -> Floats:
+    values = np.ascontiguousarray(poses, np.float32)
+    if values.ndim != 2 or values.shape[1] != COUNT:
+        raise InvalidValueError("poses", f"an array of shape (B, {COUNT})", values.shape)
+    contractions = values[:, _MUSCLES]
+    if not np.isfinite(values).all() or not ((contractions >= 0.0) & (contractions <= 1.0)).all():
+        raise _refusal(values)
+    return values
+
+
+def _refusal(values: Floats) -> InvalidValueError:
+    bad = ~np.isfinite(values)
+    bad[:, _MUSCLES] |= (values[:, _MUSCLES] < 0.0) | (values[:, _MUSCLES] > 1.0)
+    face, column = (int(index) for index in np.argwhere(bad)[0])
+    expected = "a number in 0..1" if NAMES[column] in VECTOR_MUSCLES else "a finite number"
+    return InvalidValueError(f"pose {face}: {NAMES[column]}", expected, float(values[face, column]))

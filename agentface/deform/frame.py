@@ -1,0 +1,74 @@
+"""What a frame of one face needs besides its vector muscles, made once: the tables of every part."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import NamedTuple
+
+import numpy as np
+
+from agentface.anatomy.model import HeadModel
+from agentface.anatomy.muscle_set import MuscleSet
+from agentface.conventions import Floats, Indices
+from agentface.deform import between, contact, eyelids, eyes, head, jaw, limits, lips, shading, wrinkles
+from agentface.deform.between import BetweenTables
+from agentface.deform.contact import ContactTables
+from agentface.deform.eyelids import EyelidsTables
+from agentface.deform.eyes import EyesTables
+from agentface.deform.head import HeadTables
+from agentface.deform.jaw import JawTables
+from agentface.deform.limits import LimitTables
+from agentface.deform.lips import LipTables
+from agentface.deform.shading import ShadingTables
+from agentface.deform.wrinkles import WrinkleTables
+
+
+class PartTables(NamedTuple):
+    """The tables of a face with V vertices and C control points of the lips, P = V + C.
+
+    Attributes:
+        rest: ``(P, 3)`` float32 m, the skin's vertices, then the control points.
+        triangles: ``(T, 3)`` int32, of the skin.
+        limits, lips, eyelids, jaw, contact, between, wrinkles, shading, eyes, head: the parts of the same names.
+    """
+
+    rest: Floats
+    triangles: Indices
+    limits: LimitTables
+    lips: LipTables
+    eyelids: EyelidsTables
+    jaw: JawTables
+    contact: ContactTables
+    between: BetweenTables
+    wrinkles: WrinkleTables
+    shading: ShadingTables
+    eyes: EyesTables
+    head: HeadTables
+
+
+def prepare(model: HeadModel) -> tuple[PartTables, MuscleSet]:
+    """The tables of a face, and its vector muscles, which also reach the control points.
+
+    A muscle reaches a control point as far as the skin over which it lies.
+    """
+    of_lips = lips.prepare(model)
+    follow = of_lips.control_vertices, of_lips.control_weights
+    rest = np.concatenate([model.vertices, of_lips.control_rest])
+    reach = (model.muscles.reach[:, follow[0]] * follow[1]).sum(axis=2)
+    muscles = replace(model.muscles, reach=np.hstack([model.muscles.reach, np.clip(reach, 0.0, 1.0)]))
+    of_wrinkles = wrinkles.prepare(model)
+    tables = PartTables(
+        rest=rest,
+        triangles=np.ascontiguousarray(model.triangles, np.int32),
+        limits=limits.prepare(model, follow, rest),
+        lips=of_lips,
+        eyelids=eyelids.prepare(model),
+        jaw=jaw.prepare(model, follow),
+        contact=contact.prepare(model),
+        between=between.prepare(model),
+        wrinkles=of_wrinkles,
+        shading=shading.prepare(model, of_wrinkles),
+        eyes=eyes.prepare(model),
+        head=head.prepare(model),
+    )
+    return tables, muscles

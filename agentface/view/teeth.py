@@ -1,0 +1,44 @@
+"""Where a vertex lies on its tooth, for shading that goes from tooth to tooth."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from agentface.conventions import Floats, Indices
+
+
+def crown_places(positions: Floats, triangles: Indices, tooth: Floats) -> Floats:
+    """``(P, 2)`` for the vertices of a row of teeth: across -1..1 and up 0 (biting edge)..1 (gum) on each crown.
+
+    ``positions (P, 3)``, ``tooth (P,)`` above 0.5 on teeth; each tooth is one connected piece. Elsewhere 0.
+    """
+    places = np.zeros((len(positions), 2), np.float32)
+    piece = _pieces(len(positions), triangles)
+    gum = positions[tooth <= 0.5, 1]
+    for label in np.unique(piece[tooth > 0.5]):
+        mine = np.flatnonzero(piece == label)
+        crown = positions[mine].astype(np.float64)
+        flat = crown[:, [0, 2]] - crown[:, [0, 2]].mean(0)
+        # a tooth stands across the way from the middle of the mouth to it, which the arch's ellipse gives
+        middle = crown[:, [0, 2]].mean(0) - [0.0, positions[:, 2].min()]
+        across = np.array([middle[1], -middle[0]]) / np.linalg.norm(middle)
+        aside = flat @ across
+        up = crown[:, 1] - crown[:, 1].min()
+        up /= up.max()
+        roots_above = not len(gum) or gum.mean() > crown[:, 1].mean()
+        places[mine, 0] = aside / np.abs(aside).max()
+        places[mine, 1] = up if roots_above else 1 - up
+    return places
+
+
+def _pieces(count: int, triangles: Indices) -> Indices:
+    """``(count,)``: the smallest vertex that each is connected with."""
+    piece = np.arange(count, dtype=np.int32)
+    while True:
+        least = piece[triangles].min(1)
+        before = piece.copy()
+        for corner in range(3):
+            np.minimum.at(piece, triangles[:, corner], least)
+        piece = piece[piece]
+        if np.array_equal(piece, before):
+            return piece

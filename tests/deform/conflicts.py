@@ -1,0 +1,166 @@
+"""What neighbours may not do to each other in any pose: skin that turns over, teeth and eyes that poke through it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+from numba import njit
+
+from agentface.anatomy.model import HeadModel
+from agentface.conventions import SIDES
+from agentface.deform.geometry import FaceGeometry
+from agentface.parameters import PARAMETERS, FacePose
+
+UPPER_LID_RINGS, LOWER_LID_RINGS = 9, 7
+"""Rings of the lids that fold: those of the lids' regions, and two more to the crease above the upper lid."""
+DEPTH = 0.008
+"""How far behind the surface of a tooth or an eye skin is looked for, in metres."""
+
+
+def random_poses(count: int, seed: int) -> Iterator[FacePose]:
+    """Poses with every parameter uniform in its range."""
+    low = np.array([known.low for known in PARAMETERS])
+    high = np.array([known.high for known in PARAMETERS])
+    draw = np.random.default_rng(seed)
+    for _ in range(count):
+        yield FacePose((low + (high - low) * draw.random(len(low))).astype(np.float32))
+
+
+def fold_vertices(model: HeadModel) -> np.ndarray:
+    """``(V,)`` true for what folds by design: the red of the lips, the inside of the mouth, lids."""
+    inside = (model.material[:, 0] > 0.4) | (model.material[:, 1] > 0.02)
+    for side in SIDES:
+        rings = model.eyelids.rings[side]
+        for half in (*(r.upper for r in rings[:UPPER_LID_RINGS]), *(r.lower for r in rings[:LOWER_LID_RINGS])):
+            inside[half] = True
+    return inside
+
+
+@dataclass(frozen=True)
+class Edges:
+    """Edges between two triangles: ``triangles (E, 2)``, ``ends (E, 2)``, both less than 90 degrees apart at rest."""
+
+    model: HeadModel
+    triangles: np.ndarray
+    ends: np.ndarray
+
+    @classmethod
+    def of(cls, model: HeadModel) -> Edges:
+        owner: dict[tuple[int, int], int] = {}
+        pairs = []
+        for number, (a, b, c) in enumerate(model.triangles.tolist()):
+            for edge in ((a, b), (b, c), (c, a)):
+                key = (min(edge), max(edge))
+                if key in owner:
+                    pairs.append((owner[key], number, *key))
+                owner[key] = number
+        table = np.array(pairs)
+        flat = ~(_cosines(model.vertices, model.triangles, table[:, :2]) < 0)
+        return cls(model, table[flat, :2], table[flat, 2:])
+
+    def folding(self) -> np.ndarray:
+        """``(E,)`` true for edges inside the folds of lips and lids."""
+        return fold_vertices(self.model)[self.ends].all(axis=1)
+
+    def flipped(self, vertices: np.ndarray) -> np.ndarray:
+        """``(E,)`` true where the two triangles stand more than 90 degrees apart."""
+        return _cosines(vertices, self.model.triangles, self.triangles) < 0
+
+
+def _cosines(vertices: np.ndarray, triangles: np.ndarray, pairs: np.ndarray) -> np.ndarray:
+    corners = vertices.astype(np.float64)[triangles]
+    u, v = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
+    normals = np.stack([u[:, i - 2] * v[:, i - 1] - u[:, i - 1] * v[:, i - 2] for i in range(3)], axis=1)
+    return (normals[pairs[:, 0]] * normals[pairs[:, 1]]).sum(axis=1)
+
+
+class Poking:
+    """Rays from the teeth and the eyes: what has the outside of skin behind it and none before it has come through.
+
+    What shows between open lips or lids has no skin close behind it, what is covered has some before it.
+    """
+
+    def __init__(self, model: HeadModel) -> None:
+        self._parts = {name: _surface(model, name) for name in ("teeth_upper", "teeth_lower", "eye_l", "eye_r")}
+        skin = model.triangles[~(model.material[:, 1] > 0.5)[model.triangles].any(axis=1)]
+        self._near = {name: skin[_within(model, skin, points)] for name, (points, _) in self._parts.items()}
+        # the lids' wet margins lie against the eye and round it
+        self._margin = model.material[:, 2] > 0.5
+        self._centres = {f"eye_{side}": model.eye_centre(side).astype(np.float64) for side in SIDES}
+
+    def count(self, geometry: FaceGeometry) -> dict[str, int]:
+        """How many points of each part poke through the skin."""
+        vertices = geometry.vertices.astype(np.float64)
+        result = {}
+        for name, (points, normals) in self._parts.items():
+            where, outward = points, normals
+            if name == "teeth_lower":
+                turn = geometry.jaw.astype(np.float64)
+                where, outward = points @ turn[:3, :3].T + turn[:3, 3], normals @ turn[:3, :3].T
+            elif name in self._centres:
+                turn = geometry.eye_rotations[SIDES.index(name[-1])].astype(np.float64)
+                where = (points - self._centres[name]) @ turn.T + self._centres[name]
+                outward = normals @ turn.T
+            near = self._near[name]
+            outer = ~self._margin[near].any(axis=1)
+            result[name] = int(_through(where, outward, vertices, near, outer, DEPTH).sum())
+        return result
+
+
+def _surface(model: HeadModel, name: str) -> tuple[np.ndarray, np.ndarray]:
+    """Points and unit normals of a part's front: crowns without gums, eyes without their back."""
+    part = model.parts[name]
+    points = part.attributes["POSITION"].astype(np.float64)
+    normals = np.zeros_like(points)
+    corners = points[part.triangles]
+    across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    for i in range(3):
+        np.add.at(normals, part.triangles[:, i], across)
+    normals /= np.linalg.norm(normals, axis=1, keepdims=True)
+    outside = normals[:, 2] > 0.2
+    if name.startswith("teeth"):
+        outside &= part.attributes["_MATERIAL"][:, 0] > 0
+    return points[outside], normals[outside]
+
+
+def _within(model: HeadModel, triangles: np.ndarray, points: np.ndarray, reach: float = 0.03) -> np.ndarray:
+    low, high = points.min(axis=0) - reach, points.max(axis=0) + reach
+    middle = model.vertices[triangles].mean(axis=1)
+    return ((middle > low) & (middle < high)).all(axis=1)
+
+
+@njit(cache=False)
+def _through(points, outward, vertices, triangles, outer, depth):  # type: ignore[no-untyped-def]
+    """Which of ``points`` have the outside of an ``outer`` triangle within ``depth`` behind them and none before."""
+    behind, before = np.zeros(len(points), np.bool_), np.zeros(len(points), np.bool_)
+    for t in range(len(triangles)):
+        a, b, c = vertices[triangles[t, 0]], vertices[triangles[t, 1]], vertices[triangles[t, 2]]
+        ux, uy, uz = b[0] - a[0], b[1] - a[1], b[2] - a[2]
+        vx, vy, vz = c[0] - a[0], c[1] - a[1], c[2] - a[2]
+        nx, ny, nz = uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx
+        square = nx * nx + ny * ny + nz * nz
+        size = depth + max(abs(ux), abs(vx)) + max(abs(uy), abs(vy)) + max(abs(uz), abs(vz))
+        for i in range(len(points)):
+            px, py, pz = points[i, 0] - a[0], points[i, 1] - a[1], points[i, 2] - a[2]
+            if abs(px) > size or abs(py) > size or abs(pz) > size:
+                continue
+            dx, dy, dz = outward[i, 0], outward[i, 1], outward[i, 2]
+            along = nx * dx + ny * dy + nz * dz
+            if along <= 0.2 * math.sqrt(square):
+                continue
+            far = (nx * px + ny * py + nz * pz) / along
+            if abs(far) < 1e-5 or abs(far) > depth:
+                continue
+            x, y, z = px - far * dx, py - far * dy, pz - far * dz
+            # the foot's barycentric coordinates, by areas
+            one = (nz * vy - ny * vz) * x + (nx * vz - nz * vx) * y + (ny * vx - nx * vy) * z
+            two = (ny * uz - nz * uy) * x + (nz * ux - nx * uz) * y + (nx * uy - ny * ux) * z
+            if one >= 0.0 and two >= 0.0 and one + two <= square:
+                if far < 0.0:
+                    before[i] = True
+                elif outer[t]:
+                    behind[i] = True
+    return behind & ~before

@@ -1,0 +1,188 @@
+"""Contact: lips against lips and teeth, checked by intersecting triangles, which contact itself never does."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from agentface.anatomy.model import load_model
+from agentface.deform import contact
+from agentface.deform.compiled import contact as compiled
+from agentface.deform.dental_arch import fit_arch
+from agentface.deform.lip_grid import column_places, lip_grid
+from agentface.deform.pipeline import GeometricDeformer
+from agentface.parameters import COUNT, PARAMETERS, FacePose, indices_of
+from tests.deform.crossings import crossings, edges_of
+
+FACES = {face: load_model(face) for face in ("amber", "onyx")}
+TABLES = {face: contact.prepare(model) for face, model in FACES.items()}
+LOW = np.array([known.low for known in PARAMETERS])
+HIGH = np.array([known.high for known in PARAMETERS])
+MM = 1e-3
+
+
+@pytest.fixture(params=FACES)
+def face(request):
+    return request.param
+
+
+class Mouth:
+    """The triangles of both lips and of the front of the teeth, and what passes through what."""
+
+    def __init__(self, model):
+        self.model, grid = model, lip_grid(model)
+        place = column_places(grid, model.vertices.astype(np.float64), 24)
+        outer = grid.vertices[2:12]
+        self.lips = [self._within(outer[:, (place > a) & (place < b)]) for a, b in ((0.4, 11.6), (12.4, 23.6))]
+        self.edges = [edges_of(triangles) for triangles in self.lips]
+        self.red = edges_of(self._within(outer[1:]))
+        self.teeth = [self._front(name) for name in ("teeth_upper", "teeth_lower")]
+
+    def _within(self, vertices):
+        return self.model.triangles[np.isin(self.model.triangles, vertices).all(1)]
+
+    def _front(self, name):
+        mesh = self.model.parts[name]
+        points = mesh.attributes["POSITION"].astype(np.float64)
+        return points, mesh.triangles[points[mesh.triangles][..., 2].max(1) > points[:, 2].max() - 22 * MM]
+
+    def crossings(self, vertices, jaw):
+        points = vertices.astype(np.float64)
+        upper, lower = self.lips
+        lip = len(crossings(points, self.edges[0], points, lower)) + len(
+            crossings(points, self.edges[1], points, upper)
+        )
+        turned = self.teeth[1][0] @ jaw[:3, :3].T.astype(np.float64) + jaw[:3, 3]
+        return lip, *(
+            len(crossings(points, self.red, placed, teeth[1]))
+            for placed, teeth in ((self.teeth[0][0], self.teeth[0]), (turned, self.teeth[1]))
+        )
+
+
+def random_poses(count, seed):
+    """Uniform poses; a third with few muscles, a third with the jaw nearly closed, where lips meet."""
+    rng = np.random.default_rng(seed)
+    for number in range(count):
+        values = LOW + rng.random(COUNT) * (HIGH - LOW)
+        if number % 3 == 1:
+            values *= rng.random(COUNT) < 0.3
+        if number % 3 == 2:
+            values[indices_of("jaw_open")[0]] *= rng.random() ** 2
+        yield FacePose(values.astype(np.float32))
+
+
+def test_lips_and_teeth_never_pass_through_each_other(face):
+    mouth, deformer = Mouth(FACES[face]), GeometricDeformer(FACES[face])
+    for pose in random_poses(150, seed=5):
+        geometry = deformer.deform(pose)
+        assert mouth.crossings(geometry.vertices, geometry.jaw) == (0, 0, 0), repr(pose)
+
+
+def test_the_oracle_sees_lips_that_pass_through(face):
+    model = FACES[face]
+    mouth, points = Mouth(model), model.vertices.copy()
+    assert mouth.crossings(points, np.eye(4)) == (0, 0, 0)
+    points[np.unique(mouth.lips[0]), 1] -= 2 * MM
+    assert mouth.crossings(points, np.eye(4))[0] > 10
+    points = model.vertices.copy()
+    points[TABLES[face].grid.ravel(), 2] -= 9 * MM
+    assert min(mouth.crossings(points, np.eye(4))[1:]) > 10
+
+
+def test_lips_that_only_touch_stay_bit_for_bit(face):
+    for module in (contact, compiled):
+        points = FACES[face].vertices.copy()
+        module.apply(TABLES[face], FacePose().values, points)
+        np.testing.assert_array_equal(points, FACES[face].vertices)
+
+
+@settings(max_examples=20)
+@given(st.floats(0.3, 3), st.floats(-1.5, 1.5))
+def test_overlapping_lips_part_by_half_each(depth, slide):
+    """Pressed together by ``depth`` mm and slid along each other by ``slide`` mm, they end up touching."""
+    for face, model in FACES.items():
+        tables, mouth = TABLES[face], Mouth(model)
+        points = model.vertices.copy()
+        upper, lower = (tables.grid[:, columns[1:-1]] for columns in (tables.upper, tables.lower))
+        points[upper, 1] -= 0.5 * depth * MM
+        points[lower, 1] += 0.5 * depth * MM
+        points[upper, 0] += slide * MM
+        before = points.copy()
+        contact.apply(tables, FacePose().values, points)
+        assert mouth.crossings(points, np.eye(4))[0] == 0
+        raised, sunk = points[upper, 1] - before[upper, 1], before[lower, 1] - points[lower, 1]
+        assert raised.min() >= 0
+        assert sunk.min() >= 0
+        seam = tables.seam
+        middle = slice(3, -3)
+        assert abs(np.median(raised[seam, middle]) - np.median(sunk[seam, middle])) < 0.15 * MM + 0.1 * depth * MM
+
+
+def test_the_teeth_hold_lips_that_are_pushed_in(face):
+    model, tables, mouth = FACES[face], TABLES[face], Mouth(FACES[face])
+    for opening in (0.0, 0.3, 1.0):
+        pose = FacePose.of(jaw_open=opening)
+        geometry = GeometricDeformer(model, compiled=False).deform(pose)
+        points = geometry.vertices.copy()
+        points[tables.grid[3:12], 2] -= 6 * MM
+        contact.apply(tables, pose.values, points)
+        assert mouth.crossings(points, geometry.jaw)[1:] == (0, 0)
+
+
+def test_the_arch_has_the_teeth_behind_it_and_lies_close(face):
+    model = FACES[face]
+    for name in ("teeth_upper", "teeth_lower"):
+        points = model.parts[name].attributes["POSITION"].astype(np.float64)
+        points = points[np.abs(points[:, 0]) < model.landmarks["mouth_corner_l"][0]]
+        distance = fit_arch(model, name).distance(points)
+        assert distance.max() < 1e-5
+        for side in np.arange(0, 20, 4) * MM:
+            there = (np.abs(points[:, 0]) >= side) & (np.abs(points[:, 0]) < side + 4 * MM)
+            assert distance[there].max() > -1.0 * MM
+
+
+@settings(max_examples=30)
+@given(st.floats(0, 1), st.floats(0, 6), st.integers(0, 10**6))
+def test_compiled_and_numpy_agree(opening, size, seed):
+    values = FacePose.of(jaw_open=opening).values
+    for face, model in FACES.items():
+        noise = np.random.default_rng(seed).standard_normal(model.vertices.shape)
+        one = (model.vertices + size * MM * noise).astype(np.float32)
+        other = one.copy()
+        contact.apply(TABLES[face], values, one)
+        compiled.apply(TABLES[face], values, other)
+        np.testing.assert_allclose(one, other, atol=1e-7)
+
+
+def bent(model, rng, size):
+    """The face, bent smoothly by up to some ``size`` m."""
+    waves = np.cos(np.outer(model.vertices[:, 0] / 0.02, np.arange(4)) + rng.uniform(0, 6, 4))
+    return (model.vertices + waves @ (size * rng.standard_normal((4, 3)))).astype(np.float32)
+
+
+def test_contact_is_symmetric(face):
+    model, tables, flip = FACES[face], TABLES[face], np.array([-1, 1, 1])
+    rng = np.random.default_rng(2)
+    for opening in np.linspace(0.0, 0.5, 30):
+        values = FacePose.of(jaw_open=float(opening)).values
+        one = bent(model, rng, 1.2 * MM)
+        one[tables.grid[:, tables.upper[1:-1]], 1] -= 1.5 * MM
+        other = (one[model.mirror] * flip).astype(np.float32)
+        before = one.copy()
+        contact.apply(tables, values, one)
+        contact.apply(tables, values, other)
+        assert np.abs(one - before).max() > 0.1 * MM
+        np.testing.assert_allclose(other, one[model.mirror] * flip, atol=1e-5)
+
+
+def test_contact_is_continuous(face):
+    """Two poses a hair apart end up a few hairs apart, also where columns change their neighbours across."""
+    model, tables = FACES[face], TABLES[face]
+    rng, values = np.random.default_rng(3), FacePose().values
+    for _ in range(40):
+        one = bent(model, rng, 1.5 * MM)
+        other = (one + 1e-5 * rng.standard_normal(one.shape)).astype(np.float32)
+        apart = np.abs(one - other).max()
+        contact.apply(tables, values, one)
+        contact.apply(tables, values, other)
+        assert np.abs(one - other).max() < 10 * apart

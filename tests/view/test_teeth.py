@@ -1,0 +1,52 @@
+"""Every tooth knows its own sides, edge and gum."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from agentface.anatomy.model import load_model
+from agentface.resources import face_names
+from agentface.view.shirt import shirt
+from agentface.view.teeth import crown_places
+
+
+@pytest.mark.parametrize("face", face_names())
+@pytest.mark.parametrize("row", ["teeth_upper", "teeth_lower"])
+def test_each_of_fourteen_teeth_spans_its_own_width_and_height(face, row):
+    mesh = load_model(face).parts[row]
+    tooth = mesh.attributes["_MATERIAL"][:, 0] / 255.0
+    positions = mesh.attributes["POSITION"]
+    places = crown_places(positions, mesh.triangles, tooth)
+    assert (places[tooth < 0.5] == 0).all()
+    assert np.abs(places[:, 0]).max() <= 1
+    assert 0 <= places[:, 1].min() <= places[:, 1].max() <= 1
+    crown = tooth > 0.5
+    # one vertex of each tooth is farthest aside
+    assert (np.abs(places[crown, 0]) == 1).sum() >= 14
+    edge, neck = crown & (places[:, 1] < 0.05), crown & (places[:, 1] > 0.95)
+    above = positions[neck, 1].mean() - positions[edge, 1].mean()
+    assert (above > 0) == (row == "teeth_upper")
+    # the sides of a front tooth lie across, those of a back tooth along the jaw
+    front = crown & (np.abs(positions[:, 0]) < 0.004)
+    assert np.corrcoef(places[front, 0], np.sign(places[front, 0]))[0, 1] > 0.5
+    assert places[front, 0].min() < -0.9
+    assert places[front, 0].max() > 0.9
+
+
+def test_a_tooth_alone_needs_no_gum():
+    box = np.array([[x, y, z] for x in (-1, 1) for y in (0, 1) for z in (4, 5)], np.float32)
+    triangles = np.array([[i, (i + 1) % 8, (i + 2) % 8] for i in range(8)], np.int32)
+    places = crown_places(box, triangles, np.ones(8, np.float32))
+    assert set(np.abs(places[:, 0])) == {1.0}
+    assert set(places[:, 1]) == {0.0, 1.0}
+
+
+def test_the_shirt_is_measured_from_its_collar():
+    model = load_model("amber")
+    vertices, triangles, weave = shirt(model)
+    assert len(weave) == len(vertices) == triangles.max() + 1
+    assert 0 <= weave[:, 0].min() <= weave[:, 0].max() <= np.pi + 1e-6
+    # farther from the collar is lower and wider
+    assert np.corrcoef(weave[:, 1], vertices[:, 1])[0, 1] < -0.8
+    assert abs(weave[72:144, 1]).max() < 1e-6
