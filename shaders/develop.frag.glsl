@@ -8,6 +8,7 @@ uniform float exposure;
 uniform float aspect;
 uniform vec3 background_inner;
 uniform vec3 background_outer;
+uniform bool see_through;  // straight alpha in place of a background
 
 // Narkowicz 2015, "ACES filmic tone mapping curve".
 vec3 film(vec3 x) {
@@ -28,6 +29,8 @@ void main() {
     vec2 off = (place - vec2(0.5, 0.55)) * vec2(aspect, 1.0);
     float r = length(off);
     vec3 behind = mix(background_inner, background_outer, smoothstep(0.05, 0.85, r));
-    vec3 x = film(exposure * (seen.rgb + (1.0 - clamp(seen.a, 0.0, 1.0)) * behind));
-    pixel = vec4(srgb(x) + (dither(gl_FragCoord.xy) - 0.5) / 255.0, 1.0);
+    float cover = clamp(seen.a, 0.0, 1.0);
+    vec3 light_here = see_through ? seen.rgb / max(cover, 1e-4) : seen.rgb + (1.0 - cover) * behind;
+    vec3 x = srgb(film(exposure * light_here)) + (dither(gl_FragCoord.xy) - 0.5) / 255.0;
+    pixel = see_through ? vec4(x * step(1e-4, cover), cover) : vec4(x, 1.0);
 }

@@ -9,7 +9,7 @@ vec3 hair_light(vec3 base, vec3 along, vec3 n, vec3 view, float gloss, float spr
         w *= w; w *= w; w *= w; w *= w; w *= w;   // to the power of 32
         c *= c; c *= c; c *= c;                   // of 8
         float body = sqrt(max(1.0 - t_l * t_l, 0.0)), through = max(-dot(view, l), 0.0);
-        vec3 light = base * 0.8 * body + gloss * (0.06 * w + 0.9 * base * c) + gloss * 1.6 * base * through * through * body;
+        vec3 light = base * 0.8 * body + gloss * (0.085 * w + 1.2 * base * c) + gloss * 1.6 * base * through * through * body;
         total += light_colour[i].rgb * facing * cover * light;
     }
     return total;

@@ -31,8 +31,8 @@ def random_poses(count: int, seed: int = 3) -> Floats:
 def run(model: HeadModel | None = None, sizes: tuple[int, ...] = SIZES, faces: int = _FACES) -> dict[str, Any]:
     """For each number of faces and of threads: microseconds a face and faces a second, of whole frames in one call.
 
-    Medians over interleaved rounds. ``one_to_two_threads_ratio`` is how many times faster two threads are; a crowd of
-    no more than a few faces stays on one.
+    Medians over interleaved rounds. ``one_to_two_threads_ratio`` is how many times faster two threads are; one face
+    stays on one.
     """
     if model is None:
         from agentface.anatomy.model import load_model

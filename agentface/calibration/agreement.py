@@ -14,6 +14,8 @@ from agentface.deform.pipeline import GeometricDeformer
 from agentface.parameters import FacePose
 
 PART_OF_PEAK = 0.25
+AS_FAR = 0.99
+"""Of the peak: what moves as far as that shares it; at a border the mesh would decide."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -26,7 +28,8 @@ class Agreement:
         peak_ratio: the muscles' largest displacement over the artists'.
         peak_mm: the artists' largest displacement.
         fitted: whether the calibration fits these muscles to this shape.
-        region, artists_region: the paper's region, without side, where each is largest.
+        region, artists_region: the paper's region, without side, where each is largest; where the muscles move several
+            regions as far, to a percent of their peak, the artists' among them counts.
     """
 
     cosine: float
@@ -45,13 +48,15 @@ def agreement(model: HeadModel, muscles: Floats, artists: Floats, *, fitted: boo
     chosen = wanted > PART_OF_PEAK * peak
     dots = (muscles[chosen] * artists[chosen]).sum(1)
     cosines = dots / np.maximum(moved[chosen] * wanted[chosen], 1e-12)
+    artists_region = _region(model, int(wanted.argmax()))
+    farthest = {_region(model, int(vertex)) for vertex in np.flatnonzero(moved >= AS_FAR * moved.max())}
     return Agreement(
         cosine=float(np.where(moved[chosen] > 1e-7, cosines, 0.0).mean()),
         covered=float((moved[chosen] > 0.1 * peak).mean()),
         peak_ratio=float(moved.max()) / peak,
         peak_mm=1e3 * peak,
-        region=_region(model, int(moved.argmax())),
-        artists_region=_region(model, int(wanted.argmax())),
+        region=artists_region if artists_region in farthest else _region(model, int(moved.argmax())),
+        artists_region=artists_region,
         fitted=fitted,
     )
 

@@ -20,7 +20,7 @@ from agentface.errors import InvalidValueError
 from agentface.parameters import COUNT, NAMES, VECTOR_MUSCLES
 
 _MUSCLES = slice(NAMES.index(VECTOR_MUSCLES[0]), NAMES.index(VECTOR_MUSCLES[-1]) + 1)
-_CHUNK = 8  # faces a worker takes at a time: a millisecond or two of work
+_CHUNK = 8  # faces that a thread takes at a time, at most
 
 
 @dataclass(frozen=True, slots=True)
@@ -99,11 +99,12 @@ class Crowd:
         if len(values) > len(self._geometry):
             self._geometry = self._new_geometry(len(values))
         geometry = self._geometry.first(len(values))
-        starts = iter(range(0, len(values), _CHUNK))
-        if self._pool is None or len(values) <= _CHUNK:
-            self._work(self._scratch[0], starts, values, geometry)
+        size = min(_CHUNK, 1 + len(values) // (2 * self.threads))
+        chunks = iter([slice(start, start + size) for start in range(0, len(values), size)])
+        if self._pool is None or len(values) == 1:
+            self._work(self._scratch[0], chunks, values, geometry)
         else:
-            jobs = [self._pool.submit(self._work, scratch, starts, values, geometry) for scratch in self._scratch]
+            jobs = [self._pool.submit(self._work, scratch, chunks, values, geometry) for scratch in self._scratch]
             for job in jobs:
                 job.result()
         return geometry
@@ -113,12 +114,12 @@ class Crowd:
         if self._pool is not None:
             self._pool.shutdown()
 
-    def _work(self, scratch: Any, starts: Iterator[int], values: Floats, geometry: CrowdGeometry) -> None:
-        """Takes chunk after chunk until none is left; every thread takes from the same ``starts``."""
+    def _work(self, scratch: Any, chunks: Iterator[slice], values: Floats, geometry: CrowdGeometry) -> None:
+        """Takes chunk after chunk until none is left; every thread takes from the same ``chunks``."""
         faces = self._kernels.Faces(**{name: getattr(geometry, name) for name in self._kernels.Faces._fields})
-        for start in starts:
-            end = min(start + _CHUNK, len(values))
-            self._kernels.deform(self._tables, self._blocks, values, start, end, scratch, faces)
+        for chunk in chunks:
+            end = min(chunk.stop, len(values))
+            self._kernels.deform(self._tables, self._blocks, values, chunk.start, end, scratch, faces)
 
     def _new_scratch(self) -> Any:
         muscles, steps = len(VECTOR_MUSCLES), math.ceil(1.0 / STEP)

@@ -5,8 +5,6 @@ from __future__ import annotations
 import math
 from pathlib import Path
 
-import numpy as np
-
 from agentface.anatomy.model import HeadModel, load_model
 from agentface.deform.pipeline import GeometricDeformer
 from agentface.figures.sheet import png, sheet
@@ -35,6 +33,6 @@ def figures(face: str | Path) -> dict[str, bytes]:
 
 def _close(model: HeadModel, turn: float) -> Camera:
     """A camera on the mouth and the chin, ``turn`` radians to the person's left of the front."""
-    target = 0.5 * (model.landmarks["lower_lip_middle"] + model.landmarks["pogonion"]).astype(np.float64)
-    eye = target + _DISTANCE * np.array([math.sin(turn), 0.03, math.cos(turn)])
-    return Camera(eye=eye, target=target, field_of_view=math.radians(_FIELD_OF_VIEW_DEG))
+    x, y, z = (0.5 * (model.landmarks["lower_lip_middle"] + model.landmarks["pogonion"])).tolist()
+    eye = (x + _DISTANCE * math.sin(turn), y + 0.03 * _DISTANCE, z + _DISTANCE * math.cos(turn))
+    return Camera(eye=eye, target=(x, y, z), field_of_view=math.radians(_FIELD_OF_VIEW_DEG))

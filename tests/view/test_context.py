@@ -60,7 +60,9 @@ def test_a_compiler_error_is_mapped_to_its_file_and_line(context, tmp_path, main
 def test_every_shader_compiles(context):
     fragments = {
         "ribbon": ["ribbon"],
+        "strand": ["strand"],
         "skin": ["skin"],
+        "atlas": ["atlas"],
         "part": ["part"],
         "eye": ["eye"],
         "anchored": ["part", "cap"],

@@ -70,9 +70,9 @@ def _contract(rest: Floats, blocks: Blocks, values: Floats, scratch: Scratch) ->
 def _shade(tables: PartTables, values: Floats, points: Floats, faces: Faces, face: int) -> None:
     """The face's vertices with their wrinkles, and the normals before and after these rise."""
     vertices, smooth, heights = faces.vertices[face], faces.smooth_normals[face], faces.wrinkles[face]
-    for vertex in range(vertices.shape[0]):
-        for axis in range(3):
-            vertices[vertex, axis] = points[vertex, axis]
+    moved, shown = points.ravel(), vertices.ravel()
+    for index in range(shown.shape[0]):
+        shown[index] = moved[index]
     normals.vertex_normals(vertices, tables.triangles, smooth)
     wrinkles.levels(tables.wrinkles, values, faces.wrinkle_levels[face])
     wrinkles.heights(tables.wrinkles, values, heights)

@@ -18,9 +18,15 @@ _SMALLEST = np.float32(1e-36)  # m^4, near the end of single precision
 @njit(cache=True, nogil=True, error_model="numpy", fastmath=True)
 def apply(tables: ShadingTables, heights: Floats, vertices: Floats, smooth: Floats, out: Floats) -> None:
     """Write to ``out (V, 3)`` the unit normals of ``vertices (V, 3)``, raised by ``heights (V,)``."""
-    out[:] = smooth
-    if _highest(tables, heights) == _ZERO:
-        return
+    before, after = smooth.ravel(), out.ravel()
+    for index in range(before.shape[0]):
+        after[index] = before[index]
+    if _highest(tables, heights) > _ZERO:
+        _renew(tables, vertices, smooth, out)
+
+
+@njit(cache=True, nogil=True, error_model="numpy", fastmath=True)
+def _renew(tables: ShadingTables, vertices: Floats, smooth: Floats, out: Floats) -> None:
     for place in range(tables.near.shape[0]):
         for axis in range(3):
             out[tables.near[place], axis] = _ZERO
