@@ -32,5 +32,5 @@ void main() {
     float cover = clamp(seen.a, 0.0, 1.0);
     vec3 light_here = see_through ? seen.rgb / max(cover, 1e-4) : seen.rgb + (1.0 - cover) * behind;
     vec3 x = srgb(film(exposure * light_here)) + (dither(gl_FragCoord.xy) - 0.5) / 255.0;
-    pixel = see_through ? vec4(x * step(1e-4, cover), cover) : vec4(x, 1.0);
+    pixel = see_through ? vec4(x * step(0.5 / 255.0, cover), cover) : vec4(x, 1.0);
 }

@@ -10,6 +10,7 @@ FIGURES: dict[str, str] = {
     "lips": "Figures 2 and 6: the lips' surface and its control points, and orbicularis oris",
     "combination": "Figures 4 and 5: one, two and three muscles, combined in three ways",
     "eyes": "Figures 7 and 8: closing one eye, closing both; and the squeeze that closes",
+    "jaw": "the jaw's opening, from closed to wide",
     "wrinkles": "Figures 11 and 12: shading normals at the wrinkles' feet, and wrinkles on mesh and forehead",
     "expressions": "Figures 13 to 16: neutral, surprise, happiness, sadness",
 }

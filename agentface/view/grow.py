@@ -27,7 +27,7 @@ from agentface.view.styles import (
 
 _GUIDES, _GUIDE_POINTS = 420, 60
 _GUIDE_SEED = 7
-_WAVE = 0.060
+_WAVE = 0.090
 """Metres from wave to wave of wavy hair."""
 _STRAY = 0.03
 """The part of the strands that leave their lock."""
