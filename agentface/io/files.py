@@ -2,11 +2,18 @@
 
 from __future__ import annotations
 
+import errno
 import os
 import tempfile
 from pathlib import Path
 
 from agentface.errors import OutputError
+
+_HINTS = {
+    errno.ENOSPC: "free some space, or choose another disk",
+    errno.EDQUOT: "free some space, or choose another disk",
+    errno.EFBIG: "choose a disk that takes larger files, or raise the limit (ulimit -f)",
+}
 
 
 def check_writable(path: Path) -> None:
@@ -18,6 +25,13 @@ def check_writable(path: Path) -> None:
         raise OutputError(f"{path}: expected a file in a folder that exists, got no folder {folder}; make it first")
     if not os.access(folder, os.W_OK):
         raise OutputError(f"{path}: expected a folder that can be written to, got {folder}; choose another one")
+
+
+def cannot_write(path: Path, error: Exception) -> str:
+    """The message of an OutputError for what the system, or a library, said of ``path``."""
+    number, reason = getattr(error, "errno", None), getattr(error, "strerror", None) or error
+    hint = _HINTS.get(number or 0, "choose a folder that can be written to")
+    return f"{path}: expected to write it, got: {reason}; {hint}"
 
 
 def write_file(path: Path, content: bytes) -> None:
@@ -33,7 +47,7 @@ def write_file(path: Path, content: bytes) -> None:
     except OSError as error:
         if temporary is not None:
             temporary.unlink(missing_ok=True)
-        raise OutputError(f"{path}: cannot be written: {error.strerror or error}") from error
+        raise OutputError(cannot_write(path, error)) from error
 
 
 def _umask() -> int:

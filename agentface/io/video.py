@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
 from fractions import Fraction
 from pathlib import Path
 from types import TracebackType
@@ -9,13 +11,14 @@ from typing import TYPE_CHECKING, Any, Self
 
 from agentface.conventions import Bytes, check_finite
 from agentface.errors import InvalidValueError, OutputError
-from agentface.io.files import check_writable
+from agentface.io.files import cannot_write, check_writable
 
 if TYPE_CHECKING:
     from av.container import OutputContainer
     from av.video.stream import VideoStream
 
 _TICKS = 90_000
+_THREADS = 2  # a number of the machine's own would show in the file
 _FORMATS = (".mp4", ".mov", ".m4v")
 
 
@@ -23,7 +26,8 @@ class VideoWriter:
     """Writes frames as they come, each shown from its own time on.
 
     The file is written in fragments of a second: cut off at any moment, it plays up to there. An error in the
-    ``with`` block removes it; an interrupt (Ctrl-C) keeps it.
+    ``with`` block, or a full disk, removes it; an interrupt (Ctrl-C) keeps it. The same frames at the same times give
+    the same bytes, with the same versions of the libraries.
 
     Args:
         path: ends in .mp4, .mov or .m4v.
@@ -42,7 +46,8 @@ class VideoWriter:
         self._step = max(1, round(_TICKS / fps))
         self._last = -1
         self._open = True
-        self._container, self._stream = _open(path, size, fps)
+        self._file = _File(path)
+        self._container, self._stream = _open(path, self._file, size, fps)
 
     def add(self, image: Bytes, time_s: float) -> None:
         """Show ``image`` ``(H, W, 3)`` uint8 from ``time_s`` on, which is later than the time of the last frame."""
@@ -59,20 +64,28 @@ class VideoWriter:
         self._mux(frame)
 
     def close(self) -> None:
-        """Write what is left; may be called twice."""
+        """Write what is left; may be called twice. Raises OutputError when that fails, and removes the file."""
         if not self._open:
             return
-        self._open = False
         try:
             self._mux(None)
+            with self._told():
+                self._container.close()
+            self._open = False
+            self._file.close()
         finally:
-            self._container.close()
+            if self._open:
+                self.discard()
 
     def discard(self) -> None:
         """Close and remove the file."""
+        from av.error import FFmpegError
+
         if self._open:
             self._open = False
-            self._container.close()
+            with suppress(FFmpegError, OSError):  # a file that goes away need not be whole
+                self._container.close()
+            self._file.close()
         self.path.unlink(missing_ok=True)
 
     def __enter__(self) -> Self:
@@ -87,14 +100,43 @@ class VideoWriter:
             self.close()
 
     def _mux(self, frame: Any) -> None:
-        from av.error import FFmpegError
-
-        try:
+        with self._told():
             for packet in self._stream.encode(frame):
                 packet.duration = packet.duration or self._step
                 self._container.mux(packet)
+
+    @contextmanager
+    def _told(self) -> Iterator[None]:
+        from av.error import FFmpegError
+
+        try:
+            yield
         except (FFmpegError, OSError) as error:
-            raise OutputError(f"{self.path}: cannot be written: {error.strerror or error}") from error
+            raise OutputError(cannot_write(self.path, self._file.error or error)) from error
+        if self._file.error is not None:
+            raise OutputError(cannot_write(self.path, self._file.error)) from self._file.error
+
+
+class _File:
+    """What FFmpeg writes to, unbuffered; keeps the first error, which FFmpeg forgets in the last fragment."""
+
+    def __init__(self, path: Path) -> None:
+        try:
+            self._file = path.open("wb", buffering=0)
+        except OSError as error:
+            raise OutputError(cannot_write(path, error)) from error
+        self.error: OSError | None = None
+        self.close = self._file.close
+
+    def write(self, content: bytes) -> int:
+        rest = memoryview(content)
+        try:
+            while rest:
+                rest = rest[self._file.write(rest) :]
+        except OSError as error:
+            self.error = self.error or error
+            raise
+        return len(content)
 
 
 def check_video_name(path: Path) -> None:
@@ -105,7 +147,7 @@ def check_video_name(path: Path) -> None:
         )
 
 
-def _open(path: Path, size: tuple[int, int], fps: float) -> tuple[OutputContainer, VideoStream]:
+def _open(path: Path, file: _File, size: tuple[int, int], fps: float) -> tuple[OutputContainer, VideoStream]:
     import av
     from av.error import FFmpegError
     from av.video.stream import VideoStream
@@ -114,15 +156,23 @@ def _open(path: Path, size: tuple[int, int], fps: float) -> tuple[OutputContaine
     # Without frames that refer forward, the first one stands at 0 and none is lost when the writing is cut off.
     encoding = {"preset": "veryfast", "crf": "18", "bf": "0"}
     codec = "libx264" if "libx264" in av.codecs_available else "h264"
+    if codec == "libx264":
+        encoding["x264-params"] = "cpu-independent=1"
     try:
-        container = av.open(str(path), "w", format="mp4", options=movie)
+        container = av.open(file, "w", format="mp4", options=movie)
         stream = container.add_stream(codec, rate=Fraction(fps).limit_denominator(1001), options=encoding)
+        if not isinstance(stream, VideoStream):
+            raise ValueError(f"{codec} is no video codec")
+        stream.width, stream.height = size
+        stream.pix_fmt = "yuv420p"
+        stream.codec_context.time_base = Fraction(1, _TICKS)
+        stream.codec_context.gop_size = max(1, round(fps))
+        stream.codec_context.thread_count = _THREADS
+        container.start_encoding()
     except (FFmpegError, OSError, ValueError) as error:
+        file.close()
+        path.unlink(missing_ok=True)
+        if file.error is not None:
+            raise OutputError(cannot_write(path, file.error)) from error
         raise OutputError(f"{path}: cannot be written as H.264: {error}") from error
-    if not isinstance(stream, VideoStream):
-        raise OutputError(f"{path}: cannot be written as H.264: {codec} is no video codec")
-    stream.width, stream.height = size
-    stream.pix_fmt = "yuv420p"
-    stream.codec_context.time_base = Fraction(1, _TICKS)
-    stream.codec_context.gop_size = max(1, round(fps))
     return container, stream
