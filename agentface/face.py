@@ -227,6 +227,7 @@ class Face:
         quality: str = "fast",
         *,
         pose: FacePose | None = None,
+        alpha: bool = False,
     ) -> Bytes:
         """A picture of the face as shown now: ``(height, width, 3)`` uint8, sRGB.
 
@@ -235,6 +236,7 @@ class Face:
             camera: ``front``, ``three-quarter`` or ``profile``.
             quality: ``fast`` or ``portrait``.
             pose: draw this pose instead, for example one kept from earlier.
+            alpha: leave the background out: ``(height, width, 4)`` with straight alpha.
 
         Raises GraphicsError where the machine has no OpenGL.
         """
@@ -247,7 +249,7 @@ class Face:
         if pose is not None:
             self._geometry = None  # the deformer overwrites the arrays
             geometry = self._deformer.deform(pose)
-        return self._renderer.render(geometry, size=size, camera=camera, quality=quality)
+        return self._renderer.render(geometry, size=size, camera=camera, quality=quality, alpha=alpha)
 
     def explain(self) -> Explanation:
         """Which rules make the contractions of the target emotions; has ``as_dict()`` and ``render()``."""

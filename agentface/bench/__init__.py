@@ -16,6 +16,7 @@ BENCHES: dict[str, str] = {
     "papers": "the paper's Table 1: its loops with and without its improvements, and ours",
     "frame": "the whole face, beside a blendshape product with normals, and how it grows with the mesh",
     "crowd": "many faces in one call, on one thread and on two",
+    "render": "a picture in both qualities and two sizes, stage by stage, beside clearing and reading one back",
 }
 """The benchmarks and what they compare; each is a module of this package with ``run() -> dict``."""
 

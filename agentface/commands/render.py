@@ -42,6 +42,7 @@ from agentface.commands.options import (
 @size_option
 @quality_option
 @camera_option
+@click.option("--alpha", is_flag=True, help="Leave the background out: a transparent picture.")
 @click.option("-o", "--output", type=click.Path(path_type=Path), required=True, metavar="FILE.png")
 @face_options
 def render(
@@ -55,6 +56,7 @@ def render(
     size: tuple[int, int],
     quality: str,
     camera: str,
+    alpha: bool,
     output: Path,
     face: str,
     deformer: str,
@@ -66,7 +68,7 @@ def render(
     from agentface.io.files import check_writable
     from agentface.io.picture import check_picture_name, write_picture
 
-    check_picture_name(output)
+    check_picture_name(output, alpha=alpha)
     check_writable(output)
     shown = make_face(face, deformer, compiled=False, look=look)  # one frame does not pay for loading the compiler
     shown.set_emotion(emotions, fade=0.0)
@@ -78,4 +80,4 @@ def render(
         shown.set_gaze(*gaze, fade=0.0)
     if look_at is not None:
         shown.look_at(look_at, fade=0.0)
-    write_picture(output, shown.render(size, camera, quality))
+    write_picture(output, shown.render(size, camera, quality, alpha=alpha))

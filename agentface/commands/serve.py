@@ -23,7 +23,11 @@ from agentface.commands.options import (
 
 if TYPE_CHECKING:
     from agentface.face import Face
+    from agentface.io.sequence import SequenceWriter
+    from agentface.io.video import VideoWriter
     from agentface.parameters import FacePose
+
+_RECORD = "Film the face; a name like face-%05d.png gives numbered transparent pictures instead."
 
 
 @click.command()
@@ -31,7 +35,7 @@ if TYPE_CHECKING:
     "--osc", default="127.0.0.1:7400", callback=address, metavar="HOST:PORT", show_default=True, help="Where to listen."
 )
 @click.option("--view", type=click.Choice(["window", "none"]), default="none", show_default=True)
-@click.option("--record", type=click.Path(path_type=Path), metavar="FILE.mp4", help="Film the face.")
+@click.option("--record", type=click.Path(path_type=Path), metavar="FILE.mp4", help=_RECORD)
 @click.option(
     "--every-frame",
     is_flag=True,
@@ -116,10 +120,9 @@ def _film_later(
 ) -> Iterator[Callable[[float], None]]:
     """As :func:`_film`, but drawn after the end: a slow machine films as smoothly as a fast one."""
     del duration
-    from agentface.io.video import VideoWriter
-
     assert path is not None, "every-frame goes with a file"  # noqa: S101 - checked above, said to the type checker
-    VideoWriter(path, size, fps).discard()  # what cannot be written is told before the recording
+    with _film(face, path, size, camera, quality, fps, None):
+        pass  # what cannot be written or drawn is told before the recording
     noted: list[tuple[float, FacePose]] = []
     yield lambda time: noted.append((time, face.pose))
     with _writer(face, path, size, camera, quality, fps, noted[-1][0] if noted else None) as draw:
@@ -131,15 +134,23 @@ def _film_later(
 def _writer(
     face: Face, path: Path, size: tuple[int, int], camera: str, quality: str, fps: float, duration: float | None
 ) -> Iterator[Callable[[float, FacePose], None]]:
-    from agentface.io.video import VideoWriter
-
-    with VideoWriter(path, size, fps) as video, _progress(path, duration) as advance:
+    with _open_film(path, size, fps) as film, _progress(path, duration) as advance:
 
         def draw(time: float, pose: FacePose) -> None:
-            video.add(face.render(size, camera, quality, pose=pose), time)
+            film.add(face.render(size, camera, quality, pose=pose, alpha=path.suffix.lower() == ".png"), time)
             advance(time)
 
         yield draw
+
+
+def _open_film(path: Path, size: tuple[int, int], fps: float) -> VideoWriter | SequenceWriter:
+    if path.suffix.lower() == ".png":
+        from agentface.io.sequence import SequenceWriter
+
+        return SequenceWriter(path, size, fps)
+    from agentface.io.video import VideoWriter
+
+    return VideoWriter(path, size, fps)
 
 
 @contextmanager

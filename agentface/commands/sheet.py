@@ -7,9 +7,16 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
-import numpy as np
 
-from agentface.commands.options import camera_option, face_options, make_face, quality_option, read_assignments, size
+from agentface.commands.options import (
+    camera_option,
+    face_options,
+    look_option,
+    make_face,
+    quality_option,
+    read_assignments,
+    size,
+)
 
 if TYPE_CHECKING:
     from agentface.parameters import FacePose
@@ -32,6 +39,7 @@ def _levels(_: click.Context, __: click.Parameter, value: str) -> list[float]:
 @click.option("--size", default="320x360", callback=size, metavar="WxH", show_default=True, help="Of one picture.")
 @quality_option
 @camera_option
+@look_option
 @click.option("-o", "--output", type=click.Path(path_type=Path), required=True, metavar="FILE.png")
 @face_options
 def sheet(
@@ -43,6 +51,7 @@ def sheet(
     size: tuple[int, int],
     quality: str,
     camera: str,
+    look: str | None,
     output: Path,
     face: str,
     deformer: str,
@@ -54,6 +63,7 @@ def sheet(
     agentface sheet --emotions fear,surprise --levels 0.3,0.6,1 -o sheet.png
     agentface sheet --pose 'kiss: orbicularis_oris_pucker=1' --pose 'sneer: disgust=0.4, jaw_open=0.1' -o sheet.png
     """  # noqa: D301 - \b is click's mark of lines to keep
+    import numpy as np
     from rich.console import Console
     from rich.progress import track
 
@@ -66,7 +76,7 @@ def sheet(
     shown: Poses = [_pose(text) for text in poses]
     if emotions or not poses:
         shown += _by_level(emotions, levels)
-    drawn = make_face(face, deformer, compiled=len(shown) > 4)
+    drawn = make_face(face, deformer, compiled=len(shown) > 4, look=look)
     terminal = Console(stderr=True)
     bar = track(shown, "drawing", console=terminal, transient=True, disable=not terminal.is_terminal)
     panels = [(drawn.render(size, camera, quality, pose=pose), label, "") for label, pose in bar]

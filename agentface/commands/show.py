@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from agentface.commands.options import face_options, make_face
+from agentface.commands.options import face_options, look_option, make_face
 
 if TYPE_CHECKING:
     from agentface.face import Face
@@ -15,19 +15,21 @@ if TYPE_CHECKING:
 
 
 @click.command()
+@look_option
 @face_options
-def show(*, face: str, deformer: str) -> None:
+def show(*, look: str | None, face: str, deformer: str) -> None:
     """Open the live window: a panel with sliders, keys 1 to 6 for the emotions, the mouse for the view."""
-    shown = make_face(face, deformer)
+    shown = make_face(face, deformer, look=look)
     shown.warm_up()
-    make_window(shown).run()
+    make_window(shown, look=look).run()
 
 
-def make_window(face: Face, say: Callable[[str], object] = click.echo) -> Window:
+def make_window(face: Face, say: Callable[[str], object] = click.echo, look: str | None = None) -> Window:
     """A window that writes its pictures and films into the current folder."""
     from agentface.io.picture import write_picture
     from agentface.io.video import VideoWriter
     from agentface.view.capture import Capture
+    from agentface.view.look import load_look
     from agentface.view.window import Window
 
-    return Window(face, capture=Capture(write_picture, VideoWriter, say), say=say)
+    return Window(face, capture=Capture(write_picture, VideoWriter, say), look=load_look(face.model, look), say=say)

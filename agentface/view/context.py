@@ -34,6 +34,17 @@ def open_context() -> Any:
         raise GraphicsError(_NO_EGL.format(reason=str(error).strip() or type(error).__name__)) from error
 
 
+def check_alive(context: Any) -> None:
+    """Raise GraphicsError when what was drawn is lost: then reading it gives whatever lay in memory, and no error."""
+    error = context.error
+    if error != "GL_NO_ERROR" or not context.info["GL_RENDERER"]:
+        reason = error if error != "GL_NO_ERROR" else "no context, or another one's"
+        raise GraphicsError(
+            f"the picture: expected OpenGL to have drawn it, got: {reason}."
+            " The driver was reset or ran out of memory; draw in a smaller size, or start again"
+        )
+
+
 @dataclass(frozen=True, slots=True)
 class Source:
     """One shader's text with its includes in place; ``files[n]`` is the file that ``#line`` calls ``n``."""

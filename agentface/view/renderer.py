@@ -13,7 +13,7 @@ from agentface.errors import InvalidValueError, UnknownNameError
 from agentface.view.anchored import AnchoredArray, eye_linings
 from agentface.view.brows import BrowLine, brow_hairs, lash_hairs
 from agentface.view.camera import Camera, named_view
-from agentface.view.context import compile_program, open_context
+from agentface.view.context import check_alive, compile_program, open_context
 from agentface.view.frame import pack_frame, shadow_projection
 from agentface.view.hair import Hairline, hidden
 from agentface.view.head_hair import HeadHair
@@ -112,13 +112,15 @@ class Renderer:
             quality: ``fast`` or ``portrait``.
             alpha: leave the background out: ``(height, width, 4)`` with straight (not premultiplied) alpha.
 
-        Raises InvalidValueError for a wrong size, UnknownNameError for an unknown view or quality.
+        Raises InvalidValueError for a wrong size, UnknownNameError for an unknown view or quality, GraphicsError when
+        the driver has lost the context.
         """
         targets = self._targets_for(size, quality)
         self.draw(geometry, targets, camera, quality, alpha=alpha)
         width, height = targets.size
         channels = 4 if alpha else 3
         pixels = np.frombuffer(targets.picture.read(components=channels, alignment=1), np.uint8)
+        check_alive(self.context)
         return np.ascontiguousarray(pixels.reshape(height, width, channels)[::-1])
 
     def draw(
@@ -138,15 +140,14 @@ class Renderer:
         seen_from = named_view(self.model, camera) if isinstance(camera, str) else camera
         self._frame.write(pack_frame(seen_from, targets.size, geometry.head, self.look.lights))
         self._frame.bind_to_uniform_block(_BINDING)
-        self._fields.update(geometry)
+        self.upload(geometry)
         self._fields.texture.use(0)
         self._noise.use(1)
         self._wrinkles.texture.use(3)
         if SHADOW_TAPS[quality]:
             self._shadow.draw()
         self._shadow.use(2)
-        wrinkled = self._wrinkles.update(geometry.wrinkle_levels)
-        _set(self._programs["skin"], {"shadow_taps": SHADOW_TAPS[quality], "wrinkled": wrinkled})
+        _set(self._programs["skin"], {"shadow_taps": SHADOW_TAPS[quality], "wrinkled": self._wrinkled})
         targets.scene.use()
         targets.scene.clear(0.0, 0.0, 0.0, 0.0)
         context.enable_only(moderngl.DEPTH_TEST)
@@ -173,6 +174,11 @@ class Renderer:
         self._develop["aspect"].value = targets.size[0] / targets.size[1]
         self._develop["see_through"].value = alpha
         self._screen.render(moderngl.TRIANGLES, 3)
+
+    def upload(self, geometry: FaceGeometry) -> None:
+        """Hand to the GPU what changes from frame to frame; ``draw`` does it itself."""
+        self._fields.update(geometry)
+        self._wrinkled = self._wrinkles.update(geometry.wrinkle_levels)
 
     def _draw_solids(self, geometry: FaceGeometry, quality: str) -> None:
         for name in ("part", "skin"):

@@ -63,6 +63,8 @@ class Skin:
         )
         layout = [(context.buffer(mesh.ends.tobytes()), "2i", "ends")]
         for name, field in fields:
+            if name not in program:  # a compiler drops what a shader does not use
+                continue
             layout.append((context.buffer(mesh.mean(field).tobytes()), f"{field.shape[1]}f", name))
         corners = context.buffer(mesh.triangles.astype(np.int32).tobytes())
         self.array = context.vertex_array(program, layout, corners)

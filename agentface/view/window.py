@@ -14,6 +14,7 @@ from agentface.deform.geometry import FaceGeometry
 from agentface.errors import GraphicsError
 from agentface.view.capture import Capture
 from agentface.view.controls import Controls
+from agentface.view.look import Look
 from agentface.view.menu import help_text
 from agentface.view.renderer import QUALITIES, Renderer
 from agentface.view.targets import Targets
@@ -48,6 +49,7 @@ class Window:
         face: the face.
         size: width and height in points.
         capture: writes pictures and films; none are written when None.
+        look: colours and lights; the face's own when None.
         clock: seconds, for the steps between frames.
         say: prints the help, and what is amiss.
 
@@ -59,11 +61,12 @@ class Window:
         face: Face,
         size: tuple[int, int] = (1200, 720),
         capture: Capture | None = None,
+        look: Look | None = None,
         clock: Callable[[], float] = time.perf_counter,
         say: Callable[[str], object] = print,
     ) -> None:
         self.controls, self.clock, self.say = Controls(face, capture), clock, say
-        self.times = Times()
+        self.look, self.times = look, Times()
         self._no_panel = _missing_panel()
         self.glfw = _glfw()
         self.handle = self._open(size)
@@ -86,7 +89,7 @@ class Window:
             context = moderngl.create_context(require=330)
             screen = context.detect_framebuffer()  # before the renderer binds framebuffers of its own
             self._open_panel()
-            renderer = Renderer(self.controls.face.model, context=context)
+            renderer = Renderer(self.controls.face.model, self.look, context)
             before = self.clock()
             while not (self.controls.closing or glfw.window_should_close(self.handle)):
                 if each_frame is not None:
