@@ -3,6 +3,7 @@
 #include "frame.glsl"
 #include "shading.glsl"
 #include "noise.glsl"
+#include "develop.glsl"
 centroid in vec3 position, normal, rest_position;
 centroid in vec4 matter;   // depth behind the hairline 0..1, ambient light
 out vec4 colour;
@@ -15,5 +16,5 @@ void main() {
     vec3 light = hemisphere(n) * matter.y;
     for (int i = 0; i < LIGHTS; i++) light += light_colour[i].rgb * clamp(0.6 * dot(n, light_direction[i].xyz) + 0.4, 0.0, 1.0) * 0.5;
     float alpha = smoothstep(0.05, 0.95, edge + 0.5 * (fine - 0.5) * (1.0 - edge));
-    colour = vec4(hair_colour * (0.7 + 0.5 * fine) * light, alpha);
+    colour = vec4(finish(hair_colour * (0.7 + 0.5 * fine) * light), blended(alpha));
 }

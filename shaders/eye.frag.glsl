@@ -2,6 +2,7 @@
 #include "frame.glsl"
 #include "shading.glsl"
 #include "noise.glsl"
+#include "develop.glsl"
 centroid in vec3 position, local, local_normal;
 out vec4 colour;
 
@@ -55,5 +56,5 @@ void main() {
     shine += hemisphere(mirror) * 0.9 * smoothstep(-0.1, 0.5, mirror.y);
     vec3 c = mix(white * light, iris * behind, on_iris) * shade;
     c += shine * bright * smoothstep(0.0, 0.10, over) * mix(0.6, 1.0, on_iris) * smoothstep(-0.02, 0.06, under);
-    colour = vec4(c, 1.0);
+    colour = vec4(finish(c), 1.0);
 }

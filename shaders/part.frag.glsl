@@ -1,29 +1,16 @@
 #version 330 core
-// Teeth, gums and tongue inside the mouth, and cloth outside of it.
+// Teeth, gums and tongue.
 #include "frame.glsl"
 #include "shading.glsl"
 #include "noise.glsl"
+#include "develop.glsl"
 centroid in vec3 position, normal, rest_position;
-centroid in vec4 matter;   // tooth, gum, tongue, cloth
-centroid in vec2 within;   // on a tooth: across -1..1, up 0 (edge)..1 (gum); on cloth: turn, metres from the collar
+centroid in vec4 matter;   // tooth, gum, tongue
+centroid in vec2 within;   // on a tooth: across -1..1, up 0 (edge)..1 (gum)
 out vec4 colour;
 
 uniform float mouth_front;  // z of the lips at rest
 uniform float mouth_light;  // how much light the lips let in
-uniform vec3 cloth;
-
-vec3 knitted(vec3 n, vec3 view) {
-    const float RIBBED = 0.014;  // metres of the collar
-    float ribbed = smoothstep(RIBBED, RIBBED - 0.001, within.y), seam = exp(-pow((within.y - RIBBED) / 0.0008, 2.0));
-    float rib = abs(2.0 * fract(44.0 * within.x) - 1.0);
-    vec4 folds = noise(rest_position * vec3(3.1, 1.7, 3.1));
-    n = normalize(n + 0.30 * (folds.rgb - 0.5) * smoothstep(0.01, 0.06, within.y));
-    float worn = mix(0.92 + 0.16 * noise(rest_position * 90.0).b, 0.70 + 0.45 * rib, ribbed) * (1.0 - 0.45 * seam);
-    vec3 light = hemisphere(n);
-    for (int i = 0; i < LIGHTS; i++) light += light_colour[i].rgb * wrapped(vec3(dot(n, light_direction[i].xyz)), vec3(0.12));
-    float fuzz = pow(1.0 - clamp(dot(n, view), 0.0, 1.0), 3.0);
-    return cloth * worn * light * (1.0 + 1.2 * fuzz) * smoothstep(-0.004, 0.012, within.y + 0.006);
-}
 
 vec3 enamel() {
     float up = within.y, aside = within.x * within.x;
@@ -37,10 +24,6 @@ vec3 enamel() {
 void main() {
     vec3 view = normalize(eye_point.xyz - position), n = normalize(normal);
     n = dot(n, view) < 0.0 ? -n : n;
-    if (matter.w > 0.5) {
-        colour = vec4(knitted(n, view), 1.0);
-        return;
-    }
     vec4 fine = noise(rest_position * 60.0), grain = noise(rest_position * 210.0);
     float tongue = matter.z, groove = exp(-pow(rest_position.x / 0.0016, 2.0));
     n = normalize(n + (0.05 * matter.x + 0.12 * matter.y + 0.30 * tongue) * (grain.bag - 0.5));
@@ -59,5 +42,5 @@ void main() {
     }
     gloss += hemisphere(reflect(-view, n)) * fresnel(0.042, n_v) * 0.6;
     const vec3 WARM = vec3(1.04, 0.96, 0.88);  // light that the lips and cheeks let through
-    colour = vec4((albedo * light * WARM + gloss) * reach, 1.0);
+    colour = vec4(finish((albedo * light * WARM + gloss) * reach), 1.0);
 }

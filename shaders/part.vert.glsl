@@ -2,7 +2,7 @@
 #include "frame.glsl"
 in vec3 place;
 in vec3 facing;
-in vec4 material;      // tooth, gum, tongue, cloth
+in vec4 material;      // tooth, gum, tongue
 in vec2 detail;        // on a tooth: across and up; on cloth: turn and metres from the collar
 uniform mat4 moved;    // from rest into the scene
 

@@ -2,6 +2,9 @@
 // A hair: a curve from a root on a triangle of the skin, widened to a ribbon that faces the camera.
 #include "frame.glsl"
 #include "surface.glsl"
+#include "shading.glsl"
+#include "hair.glsl"
+#include "develop.glsl"
 in ivec3 corners;      // the triangle's vertices
 in vec3 weights;       // where the root lies in it
 in vec3 bend;          // the curve's middle control point from the root, in the root's axes, metres
@@ -9,8 +12,9 @@ in vec3 tip;           // its end
 in vec3 stroke;        // place along the curve 0..1, side -1 or 1, radius in metres
 in vec4 paint;         // colour and opacity
 
-out vec3 position, along, normal;
 out vec4 tone;
+
+uniform float gloss;
 
 const float NARROWEST = 0.55;  // pixels; thinner hair fades instead
 
@@ -23,15 +27,14 @@ void main() {
 
     float t = stroke.x;
     vec3 placed = (head * vec4(root, 1.0)).xyz + axes * (2.0 * t * (1.0 - t) * bend + t * t * tip);
-    along = normalize(axes * ((2.0 - 4.0 * t) * bend + 2.0 * t * tip));
-    normal = axes[2];
+    vec3 along = normalize(axes * ((2.0 - 4.0 * t) * bend + 2.0 * t * tip));
     vec3 towards = eye_point.xyz - placed;
     float pixels = stroke.z * eye_point.w / length(towards);
     float widened = max(1.0, NARROWEST / pixels);
     float taper = (1.0 - 0.85 * pow(t, 1.6)) * min(1.0, 0.5 + 2.0 * t);
     vec3 sideways = cross(along, towards);
     placed += normalize(sideways) * stroke.y * stroke.z * widened * taper;
-    position = placed;
-    tone = vec4(paint.rgb, paint.a / widened * (1.0 - 0.75 * t * t) * min(1.0, 0.55 + 1.6 * t));
+    vec3 light = hair_light(paint.rgb, along, axes[2], normalize(towards), gloss, 0.0, 1.0);
+    tone = vec4(finish(light), blended(paint.a / widened * (1.0 - 0.75 * t * t) * min(1.0, 0.55 + 1.6 * t)));
     gl_Position = view_projection * vec4(placed, 1.0);
 }

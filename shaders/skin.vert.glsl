@@ -1,22 +1,19 @@
 #version 330 core
+// Skin lit by pixel; what changes slowly is found here.
 #include "frame.glsl"
 #include "surface.glsl"
+#include "shading.glsl"
+#include "complexion.glsl"
 #include "atlas.glsl"
-in ivec2 ends;         // the skin vertices between which this one lies
-in vec3 rest;          // at rest, metres
-in vec3 soft_normal;   // at rest, blurred
-in vec3 rest_normal;
-in vec4 material;      // lip, inside of the mouth, wet lid margin, ear
-in vec4 complexion;    // redness, eye socket, gloss, under the hair
-in float ambient;      // how much of the surroundings' light arrives
-in float lit_at_rest;  // how much of the key light arrives at rest
+#include "skin_place.glsl"
 
 centroid out vec3 position, normal, blurred_normal, rest_position;
-centroid out vec4 matter, tint;
-centroid out float open_sky, rest_key;
+centroid out vec3 colour_here, around;  // albedo without lips; light from everywhere but key and fill
+centroid out vec4 matter;               // lip, inside of the mouth, wet lid margin, gloss
+centroid out vec3 light_here;           // how much of the surroundings' light arrives; shine; under the hair
+#ifdef WRINKLED
 centroid out vec2 atlas;
-
-const float MOUTH_BEHIND = 0.007;  // metres
+#endif
 
 void main() {
     vec4 placed = head * vec4(edge_position(ends), 1.0);
@@ -25,13 +22,18 @@ void main() {
     normal = mat3(head) * n;
     blurred_normal = mat3(head) * (soft_normal + 0.6 * (n - rest_normal));
     rest_position = rest;
+    gl_Position = skin_clip(position);
+#ifdef WRINKLED
     atlas = atlas_place(rest);
-    matter = material;
-    tint = complexion;
-    open_sky = ambient;
-    rest_key = lit_at_rest;
-    gl_Position = view_projection * placed;
-    // the inside of the mouth follows the lips less than the lips move: it must not hide the teeth
-    vec4 behind = view_projection * vec4(position + MOUTH_BEHIND * material.y * normalize(position - eye_point.xyz), 1.0);
-    gl_Position.z = behind.z / behind.w * gl_Position.w;
+#endif
+    float lip = smoothstep(0.30, 0.75, material.x), mouth = smoothstep(0.35, 0.9, material.y), wet = smoothstep(0.2, 0.95, material.z);
+    matter = vec4(material.xyz, complexion.z);
+    colour_here = complexion_colour(complexion, mouth, wet, 0.5);
+    float sky = sky_light(ambient, lip, mouth, rest.z);
+    light_here = vec3(sky, sheen(ambient, mouth, complexion.w, max(lip, wet)), complexion.w);
+    vec3 soft = normalize(blurred_normal);
+    around = hemisphere(soft);
+    for (int i = 2; i < LIGHTS; i++)
+        around += light_colour[i].rgb * wrapped(scattered(normal, soft, light_direction[i].xyz), RIM_WRAP);
+    around *= bled(sky);
 }

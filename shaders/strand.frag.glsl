@@ -9,5 +9,5 @@ uniform float solid;      // 1: hides what is behind it, 0: fades at its sides
 void main() {
     float fine = abs(2.0 * fract(streaks * place.x + 0.6 * place.y + 7.0 * place.z) - 1.0);
     float across = place.x * place.x;
-    colour = vec4(tone.rgb * (0.78 + 0.44 * fine), mix(tone.a * (1.0 - across * across), 1.0, solid));
+    colour = vec4(tone.rgb * (0.86 + 0.27 * fine), mix(tone.a * (1.0 - across * across), 1.0, solid));
 }

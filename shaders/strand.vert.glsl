@@ -4,6 +4,7 @@
 #include "surface.glsl"
 #include "shading.glsl"
 #include "hair.glsl"
+#include "develop.glsl"
 in int anchor;         // the skin vertex it moves with
 in vec3 offset;        // from there, metres
 in vec3 along_rest;
@@ -35,7 +36,8 @@ void main() {
     placed += normalize(cross(along, towards)) * side * seen * stroke.y * taper * widened;
 
     vec3 base = paint.rgb * mix(1.0, 1.25, smoothstep(0.5, 1.0, t));
-    tone = vec4(hair_light(base, along, n, view, gloss, 0.22 * (own - 0.5), stroke.z), paint.a * (1.0 - 0.7 * smoothstep(0.75, 1.0, t)) * min(1.0, 0.45 + 8.0 * t) / widened);
+    vec3 light = hair_light(base, along, n, view, gloss, 0.22 * (own - 0.5), stroke.z);
+    tone = vec4(finish(light), blended(paint.a * (1.0 - 0.7 * smoothstep(0.75, 1.0, t)) * min(1.0, 0.45 + 8.0 * t) / widened));
     place = vec3(side, t, own);
     gl_Position = view_projection * vec4(placed, 1.0);
 }

@@ -1,7 +1,8 @@
 // Wrinkles finer than the mesh; the atlas is written by agentface/view/wrinkles.py.
 #include "atlas.glsl"
 uniform sampler2D wrinkle_atlas;  // metres of height; 0..1 how near a crease is
-uniform bool wrinkled;            // whether anything has risen
+
+const float CREASE_SHADE = 0.5;   // of the light that the bottom of a crease misses
 
 // The normal of the skin with its wrinkles: Mikkelsen's surface gradient (2010), from differences over a pixel, or
 // over a texel and a half where that is more. w: the crease.

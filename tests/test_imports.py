@@ -41,6 +41,7 @@ OWNERS = {
     "socket": {"io"},
     "pythonosc": {"io"},
     "av": {"io"},
+    "defusedxml": {"io"},
     "PIL": {"io", "figures"},
 }
 

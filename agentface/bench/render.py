@@ -7,16 +7,20 @@ import time
 from collections import defaultdict
 from collections.abc import Iterator
 from contextlib import contextmanager
-from itertools import cycle, islice
+from itertools import cycle
 from statistics import median
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from agentface.deform.pipeline import GeometricDeformer
-from agentface.view.renderer import QUALITIES, Renderer
+from agentface.view.renderer import Renderer
 from agentface.view.targets import Targets
+from agentface.view.tiers import QUALITIES
 
 if TYPE_CHECKING:
     from agentface.anatomy.model import HeadModel
+    from agentface.conventions import Bytes
     from agentface.deform.geometry import FaceGeometry
     from agentface.parameters import FacePose
 
@@ -24,8 +28,64 @@ SIZES = ((640, 480), (1280, 720))
 STAGES = ("deform", "upload", "draw", "readback")
 
 
+def run(model: HeadModel | None = None, rounds: int = 15, sizes: tuple[tuple[int, int], ...] = SIZES) -> dict[str, Any]:
+    """Medians over interleaved rounds, in milliseconds a frame; ``_cpu_ms`` is the time of all processors together.
+
+    For each quality and size: ``deform``, from a pose to vertices; ``upload``, of what changes with the frame;
+    ``draw``, all passes; ``readback``, to an array; the GPU has done its work before and after each. ``frame`` is all
+    that in one go, as a program calls it, ``frames_hz`` how many of them a second has. ``floor`` is clearing a picture
+    of the size and reading it back. The expression changes from frame to frame; one round before the first is not
+    counted. Raises GraphicsError where there is no OpenGL.
+    """
+    if model is None:
+        from agentface.anatomy.model import load_model
+
+        model = load_model()
+    renderer, deformer = _Renderer(model), GeometricDeformer(model)
+    stages = _Stages(renderer.context)
+    targets = {
+        (quality, size): Targets.make(renderer.context, size, samples)
+        for size in sizes
+        for quality, samples in QUALITIES.items()
+    }
+    poses = cycle(_poses())
+    for turn in range(rounds + 1):
+        if turn == 1:
+            stages.forget()
+        for size in sizes:
+            _floor(targets["fast", size], stages)
+        for (quality, _), screen in targets.items():
+            _frame(renderer, deformer, poses, screen, quality, stages)
+    floor = {_name(size): stages.medians(f"floor {_name(size)}") for size in sizes}
+    report = {
+        "renderer": renderer.context.info["GL_RENDERER"],
+        "processors": os.cpu_count(),
+        "vertices": len(model.vertices),
+        "rounds": rounds,
+        "floor": floor,
+    }
+    report |= {quality: {} for quality in QUALITIES}
+    for quality, size in targets:
+        figures = stages.medians(f"{quality} {_name(size)}")
+        figures["frames_hz"] = 1e3 / figures["frame_ms"]
+        figures["frame_to_floor_ratio"] = figures["frame_ms"] / floor[_name(size)]["frame_ms"]
+        report[quality][_name(size)] = figures
+    renderer.context.release()
+    return report
+
+
+class _Renderer(Renderer):
+    """A renderer whose upload can be taken for done, to time the rest."""
+
+    uploaded = False
+
+    def upload(self, geometry: FaceGeometry) -> None:
+        if not self.uploaded:
+            super().upload(geometry)
+
+
 class _Stages:
-    """Wall and processor time of named stages, the GPU's work done at both ends of each."""
+    """Wall and processor milliseconds of stages that are named ``<group>.<stage>``."""
 
     def __init__(self, context: Any) -> None:
         self._finish = context.finish
@@ -43,102 +103,64 @@ class _Stages:
         self._times.clear()
 
     def medians(self, group: str) -> dict[str, float]:
-        """``<stage>_ms`` and ``<stage>_cpu_ms`` of the stages named ``<group>.<stage>``."""
-        found = {}
+        """``<stage>_ms`` and ``<stage>_cpu_ms`` of the stages of ``group``."""
+        found: dict[str, float] = {}
         for name, times in self._times.items():
-            if name.startswith(group + "."):
-                stage = name.removeprefix(group + ".")
+            owner, _, stage = name.partition(".")
+            if owner == group:
                 wall, processor = zip(*times, strict=True)
                 found |= {f"{stage}_ms": median(wall), f"{stage}_cpu_ms": median(processor)}
         return found
 
 
-class _Bench(Renderer):
-    """A renderer whose uploads are a stage of their own."""
-
-    stages: _Stages | None = None
-    group = ""
-
-    def upload(self, geometry: FaceGeometry) -> None:
-        if self.stages is None:
-            super().upload(geometry)
-            return
-        with self.stages.stage(f"{self.group}.upload"):
-            super().upload(geometry)
-
-
-def run(model: HeadModel | None = None, rounds: int = 15, sizes: tuple[tuple[int, int], ...] = SIZES) -> dict[str, Any]:
-    """Medians over interleaved rounds, in milliseconds a frame; ``_cpu_ms`` is the time of all processors together.
-
-    For each quality and size: ``deform``, from a pose to vertices; ``upload``, of what changed; ``draw``, all passes;
-    ``readback``, to an array; each with the GPU's work done before and after. ``frame`` is the same in one go, as a
-    program calls it, ``rate_hz`` how many of them a second has. ``floor`` is clearing a picture of the size and
-    reading it back. The expression changes from round to round. One round before the first is not counted.
-    """
-    from agentface.anatomy.model import load_model
-
-    model = model or load_model()
-    renderer, deformer = _Bench(model), GeometricDeformer(model)
-    stages = _Stages(renderer.context)
-    for turn, pose in enumerate(islice(cycle(_poses()), rounds + 1)):
-        if turn == 1:
-            stages.forget()
-        for size in sizes:
-            _floor(renderer, size, stages)
-            for quality in QUALITIES:
-                _frame(renderer, deformer, pose, size, quality, stages)
-    report: dict[str, Any] = {
-        "renderer": renderer.context.info["GL_RENDERER"],
-        "processors": os.cpu_count(),
-        "vertices": len(model.vertices),
-        "rounds": rounds,
-        "floor": {_name(size): stages.medians(f"floor.{_name(size)}") for size in sizes},
-    }
-    for quality in QUALITIES:
-        report[quality] = {
-            _name(size): _figures(stages.medians(f"{quality}.{_name(size)}"), report["floor"][_name(size)])
-            for size in sizes
-        }
-    renderer.context.release()
-    return report
-
-
-def _poses() -> list[FacePose]:
-    """A smile that widens in surprise."""
-    from agentface.emotion.inference import default_inference
-
-    infer = default_inference()
-    return [infer.pose({"happiness": 0.2 + 0.1 * step, "surprise": 0.7}) for step in range(8)]
-
-
-def _floor(renderer: Renderer, size: tuple[int, int], stages: _Stages) -> None:
-    targets = Targets.make(renderer.context, size, 0)
-    name = f"floor.{_name(size)}"
-    with stages.stage(f"{name}.frame"):
-        with stages.stage(f"{name}.clear"):
-            targets.picture.clear(0.5, 0.5, 0.5, 1.0)
-        with stages.stage(f"{name}.readback"):
-            targets.picture.read(components=3, alignment=1)
-    targets.release()
-
-
 def _frame(
-    renderer: _Bench,
+    renderer: _Renderer,
     deformer: GeometricDeformer,
-    pose: FacePose,
-    size: tuple[int, int],
+    poses: Iterator[FacePose],
+    screen: Targets,
     quality: str,
     stages: _Stages,
 ) -> None:
-    group = f"{quality}.{_name(size)}"
-    renderer.stages = None
-    with stages.stage(f"{group}.frame"):
-        renderer.render(deformer.deform(pose), size, "front", quality)
-    renderer.stages, renderer.group = stages, group
+    group = f"{quality} {_name(screen.size)}"
     with stages.stage(f"{group}.deform"):
-        geometry = deformer.deform(pose)
-    targets = renderer.targets(size, quality)
-    with stages.stage(f"{group}.draw_and_upload"):
-        renderer.draw(geometry, targets, "front", quality)
+        geometry = deformer.deform(next(poses))
+    with stages.stage(f"{group}.upload"):
+        renderer.upload(geometry)
+    renderer.uploaded = True
+    with stages.stage(f"{group}.draw"):
+        renderer.draw(geometry, screen, "front", quality)
+    renderer.uploaded = False
     with stages.stage(f"{group}.readback"):
-        targets.picture.read(components=3, alignment=1)
+        _read(screen)
+    with stages.stage(f"{group}.frame"):
+        renderer.draw(deformer.deform(next(poses)), screen, "front", quality)
+        _read(screen)
+
+
+def _floor(screen: Targets, stages: _Stages) -> None:
+    group = f"floor {_name(screen.size)}"
+    with stages.stage(f"{group}.clear"):
+        screen.picture.clear(0.5, 0.5, 0.5, 1.0)
+    with stages.stage(f"{group}.readback"):
+        _read(screen)
+    with stages.stage(f"{group}.frame"):
+        screen.picture.clear(0.5, 0.5, 0.5, 1.0)
+        _read(screen)
+
+
+def _read(screen: Targets) -> Bytes:
+    width, height = screen.size
+    pixels = np.frombuffer(screen.picture.read(components=3, alignment=1), np.uint8)
+    return np.ascontiguousarray(pixels.reshape(height, width, 3)[::-1])
+
+
+def _poses() -> list[FacePose]:
+    """A surprise that goes from a shade of a smile to a broad one; an odd number, so that every frame meets each."""
+    from agentface.emotion.inference import default_inference
+
+    infer = default_inference()
+    return [infer.pose({"happiness": 0.2 + 0.1 * step, "surprise": 0.7}) for step in range(7)]
+
+
+def _name(size: tuple[int, int]) -> str:
+    return f"{size[0]}x{size[1]}"

@@ -17,7 +17,7 @@ _Reader = Callable[[Path], object]
 @click.option("--face", metavar="NAME|PATH", help="A face to check.")
 @click.option("--deformer", type=click.Choice(["geometric", "tissue"]), default="geometric", show_default=True)
 def check(*, files: tuple[Path, ...], face: str | None, deformer: str) -> None:
-    """Check rules and faces: files, folders, or, if none is named, all that come with agentface.
+    """Check rules, faces and EmotionML: files, folders, or, if none is named, all that come with agentface.
 
     Prints every fault with file and line; the exit code is 1 if there is any.
     """
@@ -60,10 +60,14 @@ def _faults(place: Path) -> list[Fault]:
 
 
 def _faults_of_file(path: Path) -> list[Fault]:
+    from agentface.io.emotionml import load_emotionml
+
+    if path.suffix.lower() in (".xml", ".emotionml"):
+        return _faults_of(lambda: load_emotionml(path))
     readers = _rule_readers() | _face_readers()
     kind = "look.yaml" if path.parent.name == "looks" else path.name
     if kind not in readers:
-        return [Fault(path, None, "", f"one of {', '.join(readers)}", path.name)]
+        return [Fault(path, None, "", f"one of {', '.join(readers)}, or EmotionML in .xml", path.name)]
     return _faults_of(lambda: readers[kind](path))
 
 

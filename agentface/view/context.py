@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, NoReturn
@@ -12,12 +14,17 @@ from agentface.resources import data_folder
 
 _INCLUDE = re.compile(r'^\s*#include\s+"([^"]+)"\s*$')
 # Mesa: "2:13(5): error", NVIDIA: "2(13) : error", others: "ERROR: 2:13:"
+_TITLE = re.compile(r"\AGLSL \w+ failed\s+\w+\s+=+\s+")
 _PLACE = re.compile(r"\b(\d+)(?::(\d+)(?:\(\d+\))?|\((\d+)\))\s*:")
 
 _NO_EGL = """expected OpenGL 3.3 through EGL, got: {reason}.
 On Debian and Ubuntu install the Debian packages libegl1 and libgl1 (Mesa's software renderer comes with them):
     apt-get install --no-install-recommends libegl1 libgl1
 Everything that makes no picture works without them."""
+
+# What moderngl calls errors that it does not know is, of those there are, GL_CONTEXT_LOST.
+_LOST = {"GL_OUT_OF_MEMORY": "out of memory", "GL_UNKNOWN_ERROR": "the driver was reset"}
+_WITNESSED = b"\xff\x00\xff\xff"
 
 
 def open_context() -> Any:
@@ -34,15 +41,25 @@ def open_context() -> Any:
         raise GraphicsError(_NO_EGL.format(reason=str(error).strip() or type(error).__name__)) from error
 
 
-def check_alive(context: Any) -> None:
-    """Raise GraphicsError when what was drawn is lost: then reading it gives whatever lay in memory, and no error."""
-    error = context.error
-    if error != "GL_NO_ERROR" or not context.info["GL_RENDERER"]:
-        reason = error if error != "GL_NO_ERROR" else "no context, or another one's"
-        raise GraphicsError(
-            f"the picture: expected OpenGL to have drawn it, got: {reason}."
-            " The driver was reset or ran out of memory; draw in a smaller size, or start again"
-        )
+class Witness:
+    """One pixel of a known colour. With the context lost, reading a picture gives what lay in memory, and no error."""
+
+    def __init__(self, context: Any) -> None:
+        self._context = context
+        self._pixel = context.framebuffer([context.renderbuffer((1, 1), 4)])
+        self._pixel.clear(1.0, 0.0, 1.0, 1.0)
+
+    def check(self) -> None:
+        """Raise GraphicsError when what was drawn until now is lost."""
+        seen = bytearray(4)
+        self._pixel.read_into(seen, components=4, alignment=1)
+        reason = "" if seen == _WITNESSED else "the driver lost its context"
+        reason = _LOST.get(self._context.error, reason)
+        if reason:
+            raise GraphicsError(
+                f"the picture: expected OpenGL to have drawn it, got: {reason};"
+                " ask for a smaller size if it is large, else start the program again"
+            )
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,14 +79,20 @@ class Source:
         return _PLACE.sub(place, log)
 
 
-def read_source(name: str, folder: Path | None = None) -> Source:
+def read_source(name: str, folder: Path | None = None, defines: tuple[str, ...] = ()) -> Source:
     """The shader ``name`` from ``shaders/`` (or ``folder``); each ``#include "x.glsl"`` is put in once.
+
+    ``defines`` are defined for the preprocessor behind the line ``#version``.
 
     Raises GraphicsError with file and line for a file that cannot be read.
     """
     root = folder or data_folder("shaders")
     files: list[Path] = []
-    return Source("\n".join(_lines(root / name, files, "this shader")) + "\n", tuple(files))
+    lines = _lines(root / name, files, "this shader")
+    version = next((number for number, line in enumerate(lines, start=1) if line.startswith("#version")), 0)
+    if defines:
+        lines[version:version] = [*(f"#define {name}" for name in defines), f"#line {version + 1} 0"]
+    return Source("\n".join(lines) + "\n", tuple(files))
 
 
 def _lines(path: Path, files: list[Path], wanted_by: str) -> list[str]:
@@ -92,16 +115,35 @@ def _lines(path: Path, files: list[Path], wanted_by: str) -> list[str]:
     return lines
 
 
-def compile_program(context: Any, vertex: str, fragment: str | None, folder: Path | None = None) -> Any:
+@contextmanager
+def shader_names() -> Iterator[None]:
+    """Raise GraphicsError for a uniform or an attribute that is set here and that its shader does not use."""
+    try:
+        yield
+    except KeyError as error:
+        trace = error.__traceback__
+        while trace is not None and trace.tb_next is not None:
+            trace = trace.tb_next
+        if trace is None or trace.tb_frame.f_globals["__name__"] != "moderngl":
+            raise
+        raise GraphicsError(
+            f"the shaders in {data_folder('shaders')}: expected {error} to be declared and used in one, got none;"
+            " a compiler drops what has no effect on the picture"
+        ) from error
+
+
+def compile_program(
+    context: Any, vertex: str, fragment: str | None, folder: Path | None = None, defines: tuple[str, ...] = ()
+) -> Any:
     """The ``moderngl.Program`` of two files of ``shaders/``; without ``fragment`` it writes depth only.
 
     Raises GraphicsError with the compiler's messages, each with its file and line.
     """
     import moderngl
 
-    sources = [read_source(vertex, folder)]
+    sources = [read_source(vertex, folder, defines)]
     if fragment is not None:
-        sources.append(read_source(fragment, folder))
+        sources.append(read_source(fragment, folder, defines))
     try:
         return context.program(
             vertex_shader=sources[0].text,
@@ -114,4 +156,5 @@ def compile_program(context: Any, vertex: str, fragment: str | None, folder: Pat
 def _explain(log: str, vertex: str, fragment: str | None, sources: list[Source]) -> NoReturn:
     source = sources[-1] if "fragment_shader" in log else sources[0]
     names = vertex if fragment is None else f"{vertex} and {fragment}"
-    raise GraphicsError(f"the shaders {names} do not compile:\n{source.explain(log).strip()}")
+    said = source.explain(_TITLE.sub("", log)).strip()
+    raise GraphicsError(f"the shaders {names}: expected them to compile, got:\n{said}")

@@ -13,7 +13,7 @@ from agentface.view.camera import Camera, named_view
 from agentface.view.capture import Capture
 from agentface.view.history import History, Values
 from agentface.view.menu import PRESETS
-from agentface.view.renderer import QUALITIES
+from agentface.view.tiers import QUALITIES
 
 if TYPE_CHECKING:
     from agentface.face import Face

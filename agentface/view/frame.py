@@ -29,6 +29,12 @@ def pack_frame(camera: Camera, size: tuple[int, int], head: Floats, lights: Ligh
     return np.concatenate([np.asarray(block, np.float32) for block in blocks]).tobytes()
 
 
+def pixels_a_metre(camera: Camera, size: tuple[int, int]) -> float:
+    """How many pixels a metre at the camera's target is long."""
+    width, height = size
+    return 0.5 * height * float(camera.projection(width / height)[1, 1]) / camera.distance
+
+
 def shadow_projection(lights: Lights) -> Doubles:
     """``(4, 4)`` from the scene to the clip space of the key light's depth picture."""
     back = unit(lights.key.towards)

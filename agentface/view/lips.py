@@ -9,9 +9,10 @@ a fine vertex is an edge with both ends at itself.
 from __future__ import annotations
 
 import numpy as np
+import numpy.typing as npt
 
 from agentface.anatomy.model import HeadModel
-from agentface.conventions import Floats
+from agentface.conventions import Floats, Indices
 from agentface.deform import lips
 from agentface.deform.lip_mesh import patch_mesh
 from agentface.deform.lip_surface import COLUMNS, ROWS
@@ -38,22 +39,12 @@ class FineLips:
         fine = patch_mesh(tables, 2 * max(1, round(per_cell / 2)))
         self._first = len(model.vertices)
         self._patch, self._rings, self._fine = tables.patch, len(tables.along), fine
-        vertices, places = len(tables.patch), fine.rings * fine.columns
-        share, of_patch, of_fine = (
-            np.zeros((places, vertices)),
-            np.zeros((vertices, _CONTROLS)),
-            np.zeros((places, _CONTROLS)),
-        )
-        for matrix, index, weight in (
-            (share, fine.patch, fine.share),
-            (of_patch, tables.controls, tables.weight),
-            (of_fine, fine.controls, fine.weight),
-        ):
-            np.add.at(matrix, (np.arange(len(matrix))[:, None], index), weight)
+        of_patch = np.zeros((len(tables.patch), _CONTROLS))
+        np.add.at(of_patch, (np.arange(len(of_patch))[:, None], tables.controls), tables.weight)
         fit = np.linalg.solve(of_patch.T @ of_patch + _STIFF * np.eye(_CONTROLS), of_patch.T)
-        moving = share + fine.free[:, None] * ((of_fine - share @ of_patch) @ fit)
-        self._rest, self._share, self._moving = tables.rest, share.astype(np.float32), moving.astype(np.float32)
-        self._rest_fine = self._share @ tables.rest
+        self._fit, self._of_patch = fit.astype(np.float32), (tables.controls, tables.weight)
+        self._rest = tables.rest
+        self._rest_fine = _mixed(tables.rest, fine.patch, fine.share)
         self._ends = self._edge_ends()
         inward = np.minimum(np.arange(fine.rings), np.arange(fine.rings)[::-1]) / (fine.rings / (len(tables.along) - 1))
         self._own = np.repeat(np.clip(inward, 0, 1), fine.columns).astype(np.float32)[:, None]
@@ -62,6 +53,10 @@ class FineLips:
     def count(self) -> int:
         """How many vertices it adds."""
         return len(self._rest_fine)
+
+    def has_edges(self, edges: Indices) -> npt.NDArray[np.bool_]:
+        """Which of ``edges (E, 2)`` lie within the patch: the ``skin`` of :meth:`mesh` must have cut them."""
+        return np.asarray(np.isin(edges, self._patch).all(axis=1))
 
     def mesh(self, skin: Refined) -> Refined:
         """The refined ``skin`` with the lips' cells replaced by the fine ones, watertight along their edge."""
@@ -80,16 +75,26 @@ class FineLips:
 
     def extended(self, field: Floats) -> Floats:
         """A field ``(V, k)`` of the skin's vertices with its values at the fine vertices behind them."""
-        there = np.clip(self._share @ field[self._patch], field[self._patch].min(0), field[self._patch].max(0))
+        there = np.clip(
+            _mixed(field[self._patch], self._fine.patch, self._fine.share),
+            field[self._patch].min(0),
+            field[self._patch].max(0),
+        )
         return np.concatenate([field, there]).astype(field.dtype)
 
     def update(self, vertices: Floats, normals: Floats) -> tuple[Floats, Floats]:
         """Places ``(count, 3)`` m and unit normals of the fine vertices in a frame of the skin's own ``(V, 3)``."""
-        places = self._rest_fine + self._moving @ (vertices[self._patch] - self._rest)
+        fine, moved = self._fine, vertices[self._patch] - self._rest
+        control = self._fit @ moved
+        there = _mixed(control, *self._of_patch)
+        around = np.concatenate([moved, there, normals[self._patch]], axis=1)
+        still, there, smooth = np.split(_mixed(around, fine.patch, fine.share), 3, axis=1)
+        surface = _mixed(control, fine.controls, fine.weight) - there
+        places = self._rest_fine + still + fine.free[:, None] * surface
         grid = places.reshape(self._fine.rings, self._fine.columns, 3)
         own = np.cross(np.gradient(grid, axis=0), np.roll(grid, -1, axis=1) - np.roll(grid, 1, axis=1)).reshape(-1, 3)
         own /= np.maximum(np.linalg.norm(own, axis=1, keepdims=True), 1e-12)
-        mixed = self._own * own + (1 - self._own) * (self._share @ normals[self._patch])
+        mixed = self._own * own + (1 - self._own) * smooth
         mixed /= np.maximum(np.linalg.norm(mixed, axis=1, keepdims=True), 1e-12)
         return np.asarray(places, np.float32), np.asarray(mixed, np.float32)
 
@@ -105,3 +110,8 @@ class FineLips:
                 a, b = int(edge[here]), int(edge[(here + 1) % len(edge)])
                 ends[ring * columns + column] = (a, a) if 2 * part < cells else (a, b)
         return ends
+
+
+def _mixed(points: Floats, index: Indices, weight: Floats) -> Floats:
+    """``(N, k)``: sums of rows of ``points`` at ``index (N, 16)`` by ``weight``."""
+    return np.asarray(np.einsum("nj,njk->nk", weight, points[index]), np.float32)

@@ -19,9 +19,17 @@ class RigidPart:
         self, context: Any, program: Any, vertices: Floats, triangles: Indices, material: Floats, detail: Floats
     ) -> None:
         self.program = program
-        fields = [vertices, vertex_normals(vertices, triangles), material, detail]
-        rows = np.concatenate(fields, axis=1).astype(np.float32)
-        layout = [(context.buffer(rows.tobytes()), "3f 3f 4f 2f", "place", "facing", "material", "detail")]
+        fields = {
+            "place": vertices,
+            "facing": vertex_normals(vertices, triangles),
+            "material": material,
+            "detail": detail,
+        }
+        layout = [
+            (context.buffer(field.astype(np.float32).tobytes()), f"{field.shape[1]}f", name)
+            for name, field in fields.items()
+            if name in program  # a compiler drops what a shader does not use
+        ]
         self.array = context.vertex_array(program, layout, context.buffer(triangles.astype(np.int32).tobytes()))
 
     def draw(self, moved: Floats) -> None:

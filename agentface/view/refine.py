@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
+import numpy.typing as npt
 
 from agentface.conventions import Doubles, Floats, Indices
 
@@ -44,13 +46,26 @@ def unrefined(triangles: Indices, vertex_count: int) -> Refined:
     return Refined(triangles, np.repeat(np.arange(vertex_count, dtype=np.int32)[:, None], 2, axis=1))
 
 
-def refine(triangles: Indices, vertex_count: int) -> Refined:
-    """Each triangle cut into four at the middles of its edges."""
+def refine(
+    triangles: Indices, vertex_count: int, cut: Callable[[Indices], npt.NDArray[np.bool_]] | None = None
+) -> Refined:
+    """Each triangle cut at the middles of its edges ``(E, 2)``: into four, or as many of them as ``cut`` chooses."""
     edges = np.sort(np.concatenate([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]]), axis=1)
     keys, where = np.unique(edges[:, 0].astype(np.int64) * vertex_count + edges[:, 1], return_inverse=True)
     middles = np.stack([keys // vertex_count, keys % vertex_count], axis=1).astype(np.int32)
-    ab, bc, ca = (where.reshape(3, -1) + vertex_count).astype(np.int32)
-    a, b, c = triangles.T
-    finer = [[a, ab, ca], [b, bc, ab], [c, ca, bc], [ab, bc, ca]]
+    chosen = np.ones(len(middles), bool) if cut is None else cut(middles)
+    number = (vertex_count - 1 + np.cumsum(chosen)).astype(np.int32)
+    halved = chosen[where].reshape(3, -1)  # of each triangle, its edges ab, bc, ca
+    first = np.select([halved.sum(0) == 1, halved.sum(0) == 2], [halved.argmax(0), (~halved).argmax(0) + 1], 0)
+    turn = (first[:, None] + np.arange(3)) % 3  # one cut edge comes first, the one that is left whole last
+    a, b, c = np.take_along_axis(triangles, turn, axis=1).T
+    ab, bc, ca = np.take_along_axis(number[where].reshape(3, -1).T, turn, axis=1).T
+    finer = (
+        ((a, b, c),),
+        ((a, ab, c), (ab, b, c)),
+        ((a, ab, c), (ab, b, bc), (ab, bc, c)),
+        ((a, ab, ca), (b, bc, ab), (c, ca, bc), (ab, bc, ca)),
+    )
+    parts = [np.stack(part, axis=1)[halved.sum(0) == cuts] for cuts, pattern in enumerate(finer) for part in pattern]
     kept = unrefined(triangles, vertex_count).ends
-    return Refined(np.concatenate([np.stack(f, axis=1) for f in finer]), np.concatenate([kept, middles]))
+    return Refined(np.concatenate(parts).astype(np.int32), np.concatenate([kept, middles[chosen]]))

@@ -10,7 +10,7 @@ from agentface.anatomy.model import HeadModel
 from agentface.conventions import Doubles, Floats
 from agentface.view.refine import unrefined
 
-_SIDE = 512
+_SIDE = 256
 _CLEARANCE = 0.0035
 _SOFTNESS = 0.0045
 _SLACK = 0.0012

@@ -5,13 +5,15 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 from agentface.anatomy.model import HeadModel
-from agentface.conventions import Floats
+from agentface.conventions import Floats, Indices
 from agentface.deform.geometry import FaceGeometry
 from agentface.errors import InvalidValueError
 from agentface.view.complexion import blurred, complexion
-from agentface.view.refine import refine, unrefined, vertex_normals
+from agentface.view.lips import FineLips
+from agentface.view.refine import Refined, refine, unrefined, vertex_normals
 from agentface.view.shirt import uncovered
 
 _COLUMNS = 256
@@ -19,11 +21,14 @@ _BLUR = 14
 
 
 class SkinFields:
-    """The texture ``skin_fields`` of ``shaders/surface.glsl``: positions and wrinkles, then normals."""
+    """The texture ``skin_fields`` of ``shaders/surface.glsl``: positions and wrinkles, then normals.
 
-    def __init__(self, context: Any, vertex_count: int) -> None:
-        self.count = vertex_count
-        rows = -(-vertex_count // _COLUMNS)
+    The vertices of ``lips`` come behind those of the skin.
+    """
+
+    def __init__(self, context: Any, vertex_count: int, lips: FineLips) -> None:
+        self.count, self._lips = vertex_count, lips
+        rows = -(-(vertex_count + lips.count) // _COLUMNS)
         self._texels = np.zeros((2, rows * _COLUMNS, 4), np.float32)
         self.texture = context.texture((_COLUMNS, 2 * rows), 4, dtype="f4")
         self.texture.filter = (context.NEAREST, context.NEAREST)
@@ -41,16 +46,22 @@ class SkinFields:
         self._texels[1, : self.count, :3] = geometry.smooth_normals
         self.texture.write(self._texels)
 
+    def update_lips(self, geometry: FaceGeometry) -> None:
+        """Upload the fine lips of the frame."""
+        behind = slice(self.count, self.count + self._lips.count)
+        self._texels[:, behind, :3] = self._lips.update(geometry.vertices, geometry.smooth_normals)
+        first, rows = self.count // _COLUMNS, self._texels.shape[1] // _COLUMNS
+        for half, texels in enumerate(self._texels):
+            part = texels[first * _COLUMNS :]
+            self.texture.write(part, viewport=(0, half * rows + first, _COLUMNS, rows - first))
 
-class Skin:
-    """The skin's static buffers, as it is or (``fine``) with every triangle cut into four curved ones."""
 
-    def __init__(
-        self, context: Any, program: Any, model: HeadModel, covered: Floats, lit: Floats, *, fine: bool
-    ) -> None:
-        count = len(model.vertices)
-        triangles = uncovered(model)
-        mesh = refine(triangles, count) if fine else unrefined(triangles, count)
+class SkinMeshes:
+    """The skin's static buffers, as it is and finer; drawn where ``SkinFields`` has it."""
+
+    def __init__(self, context: Any, model: HeadModel, lips: FineLips, covered: Floats, lit: Floats) -> None:
+        self._context, self._model, self._lips = context, model, lips
+        self._triangles = uncovered(model)
         normals = vertex_normals(model.vertices, model.triangles)
         fields: tuple[tuple[str, Floats], ...] = (
             ("rest", model.vertices),
@@ -61,14 +72,47 @@ class Skin:
             ("ambient", model.shade[:, :1]),
             ("lit_at_rest", lit),
         )
-        layout = [(context.buffer(mesh.ends.tobytes()), "2i", "ends")]
-        for name, field in fields:
-            if name not in program:  # a compiler drops what a shader does not use
-                continue
-            layout.append((context.buffer(mesh.mean(field).tobytes()), f"{field.shape[1]}f", name))
-        corners = context.buffer(mesh.triangles.astype(np.int32).tobytes())
-        self.array = context.vertex_array(program, layout, corners)
+        self._fields = [(name, field, lips.extended(field)) for name, field in fields]
 
-    def draw(self) -> None:
-        """Draw it where ``SkinFields`` has it."""
-        self.array.render()
+    def coarse(self, programs: tuple[Any, Any]) -> Skin:
+        """The skin as it is."""
+        mesh = unrefined(self._triangles, len(self._model.vertices))
+        return self._skin(programs, mesh, [(name, field) for name, field, _ in self._fields])
+
+    def fine(self, programs: tuple[Any, Any], longest_m: float) -> Skin:
+        """With edges longer than ``longest_m`` cut and curved, and the lips on their spline."""
+
+        def cut(edges: Indices) -> npt.NDArray[np.bool_]:
+            a, b = self._model.vertices[edges[:, 0]], self._model.vertices[edges[:, 1]]
+            return np.asarray((np.linalg.norm(a - b, axis=1) > longest_m) | self._lips.has_edges(edges))
+
+        mesh = self._lips.mesh(refine(self._triangles, len(self._model.vertices), cut))
+        return self._skin(programs, mesh, [(name, extended) for name, _, extended in self._fields])
+
+    def _skin(self, programs: tuple[Any, Any], mesh: Refined, fields: list[tuple[str, Floats]]) -> Skin:
+        buffers = [("ends", "2i", self._context.buffer(mesh.ends.tobytes()))]
+        for name, field in fields:
+            buffers.append((name, f"{field.shape[1]}f", self._context.buffer(mesh.mean(field).tobytes())))
+        return Skin(self._context, programs, buffers, mesh.triangles)
+
+
+class Skin:
+    """A mesh of the skin, smooth or with the wrinkles that the mesh has no vertices for."""
+
+    def __init__(
+        self, context: Any, programs: tuple[Any, Any], buffers: list[tuple[str, str, Any]], triangles: Indices
+    ) -> None:
+        self._context = context
+        corners = context.buffer(triangles.astype(np.int32).tobytes())
+        self._arrays = [
+            context.vertex_array(
+                program, [(data, form, name) for name, form, data in buffers if name in program], corners
+            )
+            for program in programs
+        ]
+
+    def draw(self, *, wrinkled: bool) -> None:
+        """Draw what faces the camera of it, where ``SkinFields`` has it."""
+        self._context.enable(self._context.CULL_FACE)
+        self._arrays[wrinkled].render()
+        self._context.disable(self._context.CULL_FACE)

@@ -73,8 +73,8 @@ class StrandArray:
 def nearest_vertices(points: Doubles, vertices: Floats) -> Indices:
     """``(N,)``: the vertex nearest to each point ``(N, 3)``."""
     nearest = np.empty(len(points), np.int32)
-    square = (vertices.astype(np.float64) ** 2).sum(1)
+    square, across = (vertices**2).sum(1), np.ascontiguousarray(-2.0 * vertices.T)
     for start in range(0, len(points), 512):
-        part = points[start : start + 512]
-        nearest[start : start + 512] = (square - 2 * part @ vertices.T.astype(np.float64)).argmin(1)
+        part = points[start : start + 512].astype(np.float32)
+        nearest[start : start + 512] = (square + part @ across).argmin(1)
     return nearest

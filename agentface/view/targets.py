@@ -5,24 +5,31 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-from agentface.errors import GraphicsError
+import numpy as np
+
+from agentface.conventions import Bytes
+from agentface.errors import GraphicsError, InvalidValueError
+
+LARGEST_SIDE = 8192
 
 
 @dataclass(slots=True)
 class Targets:
-    """Where a picture is drawn, resolved and developed.
+    """Where a picture is drawn and resolved.
 
-    ``wanted`` samples a pixel were asked for, ``samples`` are had. ``scene`` holds linear light (several samples
-    where ``samples`` says so), ``light`` is its resolved texture, ``picture`` the finished bytes.
+    ``wanted`` samples a pixel were asked for, ``samples`` are had. ``scene`` is what is drawn into (``picture`` itself
+    where there is one sample), ``picture`` the finished bytes, ``light`` their texture, ``backdrop`` what is behind
+    the face once ``painted``.
     """
 
     size: tuple[int, int]
     wanted: int
     samples: int
     scene: Any
-    resolved: Any
-    light: Any
     picture: Any
+    light: Any
+    backdrop: Any
+    painted: bool = False
 
     @classmethod
     def make(cls, context: Any, size: tuple[int, int], samples: int) -> Targets:
@@ -31,21 +38,47 @@ class Targets:
 
         wanted, samples = samples, min(samples, int(context.max_samples))
         try:
-            light = context.texture(size, 4, dtype="f2")
-            light.repeat_x = light.repeat_y = False
-            resolved = context.framebuffer([light], None if samples else context.depth_renderbuffer(size))
-            scene = resolved
+            light = context.texture(size, 4)
+            picture = context.framebuffer([light], None if samples else context.depth_renderbuffer(size))
+            scene = picture
             if samples:
-                colour = context.renderbuffer(size, 4, samples=samples, dtype="f2")
+                colour = context.renderbuffer(size, 4, samples=samples)
                 scene = context.framebuffer([colour], context.depth_renderbuffer(size, samples=samples))
-            picture = context.framebuffer([context.renderbuffer(size, 4)])
+            backdrop = context.framebuffer([context.renderbuffer(size, 4)])
         except moderngl.Error as error:
             raise GraphicsError(
                 f"a picture of {size[0]}x{size[1]} pixels: expected the driver to hold it, got: {error}"
             ) from error
-        return cls(size, wanted, samples, scene, resolved, light, picture)
+        return cls(size, wanted, samples, scene, picture, light, backdrop)
+
+    def read(self, *, alpha: bool = False) -> Bytes:
+        """The picture ``(height, width, 3)``, the top row first; ``alpha``: 4, straight."""
+        channels = 4 if alpha else 3
+        data = np.frombuffer(self.picture.read(components=channels, alignment=1), np.uint8)
+        pixels = np.ascontiguousarray(data.reshape(self.size[1], self.size[0], channels)[::-1])
+        if alpha:
+            cover = pixels[..., 3]
+            edge = (cover > 0) & (cover < 255)
+            colour = pixels[edge].astype(np.float32)
+            colour[:, :3] *= 255 / colour[:, 3:]
+            pixels[edge] = np.minimum(colour + 0.5, 255).astype(np.uint8)
+        return pixels
 
     def release(self) -> None:
         """Give the memory back."""
-        for item in {id(item): item for item in (self.scene, self.resolved, self.light, self.picture)}.values():
+        for item in {id(item): item for item in (self.scene, self.picture, self.light, self.backdrop)}.values():
             item.release()
+
+
+def checked_size(size: Any) -> tuple[int, int]:
+    """Width and height in pixels; raises InvalidValueError unless both are whole numbers in 1..8192."""
+    expected = f"(width, height), whole numbers of pixels in 1..{LARGEST_SIDE}"
+    try:
+        width, height = size
+    except (TypeError, ValueError):
+        raise InvalidValueError("size", expected, size) from None
+    if not all(isinstance(side, (int, np.integer)) and not isinstance(side, bool) for side in (width, height)):
+        raise InvalidValueError("size", expected, size)
+    if not (1 <= width <= LARGEST_SIDE and 1 <= height <= LARGEST_SIDE):
+        raise InvalidValueError("size", expected, size)
+    return int(width), int(height)

@@ -16,8 +16,9 @@ from agentface.view.capture import Capture
 from agentface.view.controls import Controls
 from agentface.view.look import Look
 from agentface.view.menu import help_text
-from agentface.view.renderer import QUALITIES, Renderer
+from agentface.view.renderer import Renderer
 from agentface.view.targets import Targets
+from agentface.view.tiers import QUALITIES
 from agentface.view.times import Times
 
 if TYPE_CHECKING:

@@ -35,7 +35,7 @@ def drawn():
 
 
 def test_the_command_writes_the_same_bytes_every_time(tmp_path, drawn):
-    call("-o", tmp_path)
+    call("combination", "-o", tmp_path)
     assert {path.name: path.read_bytes() for path in tmp_path.iterdir()} == drawn
     assert set(drawn) == {f"{name}.png" for name in FIGURES}
 
@@ -48,6 +48,10 @@ def test_the_figures_of_the_documents_are_these(drawn):
             gap = np.abs(np.asarray(now.convert("RGB"), int) - np.asarray(there.convert("RGB"), int)).max(axis=2)
             # Other versions of Pillow and of its font differ in some pixels, other muscles in many.
             assert (gap > 40).mean() < 0.03
+
+
+def test_an_unknown_figure_is_told(tmp_path):
+    assert "'combinations'; did you mean combination" in call("combinations", "-o", tmp_path, code=1).stderr
 
 
 def test_nothing_is_written_where_no_folder_is(tmp_path):

@@ -1,7 +1,11 @@
 from __future__ import annotations
 
+import os
+import re
+import signal
 import subprocess
 import sys
+from hashlib import sha256
 from pathlib import Path
 
 import numpy as np
@@ -70,6 +74,107 @@ def test_a_killed_process_leaves_a_file_that_plays(tmp_path):
     )
     assert subprocess.run([sys.executable, "-c", script, str(path)], check=False, timeout=60).returncode == 9
     assert len(read(path)) >= 30
+
+
+NOISE = (
+    "import numpy as np, os, sys; from pathlib import Path; from agentface.io.video import VideoWriter\n"
+    "os.sched_setaffinity(0, sorted(os.sched_getaffinity(0))[: int(sys.argv[2])])\n"
+    f"with VideoWriter(Path(sys.argv[1]), {SIZE}) as video:\n"
+    "    for i in range(70):\n"
+    f"        video.add(np.random.default_rng(i).integers(0, 255, ({SIZE[1]}, {SIZE[0]}, 3), np.uint8), i / 30)"
+)
+
+
+def test_the_same_frames_give_the_same_bytes_on_any_number_of_cores(tmp_path):
+    contents = []
+    for name, cores in (("a", 99), ("b", 99), ("c", 1)):
+        path = tmp_path / f"{name}.mp4"
+        subprocess.run([sys.executable, "-c", NOISE, str(path), str(cores)], check=True, timeout=60)
+        contents.append(path.read_bytes())
+    assert contents[0] == contents[1] == contents[2]
+    assert len(read(path)) == 70
+
+
+@pytest.mark.gl
+@pytest.mark.parametrize("name", ["film.mp4", "face-%03d.png"])
+def test_the_same_poses_give_the_same_files(tmp_path, name):
+    from agentface import Face
+    from agentface.io.sequence import SequenceWriter
+
+    contents = []
+    for take in ("a", "b"):
+        (tmp_path / take).mkdir()
+        face, transparent = Face(), name.endswith(".png")
+        with (SequenceWriter if transparent else VideoWriter)(tmp_path / take / name, (96, 96), 10) as film:
+            face.set_emotion("surprise", 1.0, fade=0.6)
+            for frame in range(6):
+                film.add(face.render((96, 96), alpha=transparent), frame / 10)
+                face.step(0.1)
+        files = sorted((tmp_path / take).iterdir())
+        contents.append([(path.name, sha256(path.read_bytes()).digest()) for path in files])
+    assert contents[0] == contents[1]
+    assert len({content for _, content in contents[0]}) >= (5 if transparent else 1), "the face moves"
+
+
+def serve_later(path: Path, seconds: float, size: str) -> subprocess.Popen:
+    """A recording whose frames are drawn at its end, on what it takes for a terminal."""
+    command = [sys.executable, "-m", "agentface", "serve", "--osc", "127.0.0.1:0", "--every-frame", "--record", path]
+    options = ["--duration", str(seconds), "--fps", "60", "--size", size]
+    terminal = os.environ | {"FORCE_COLOR": "1", "COLUMNS": "80", "PYTHONUNBUFFERED": "1"}
+    return subprocess.Popen(
+        [*map(str, command), *options], env=terminal, text=True, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE
+    )
+
+
+@pytest.mark.gl
+def test_drawing_later_tells_the_time_left(tmp_path):
+    with serve_later(tmp_path / "film.mp4", 0.5, "64x48") as server:
+        _, said = server.communicate(timeout=120)
+    assert server.returncode == 0, said
+    shares = [int(share) for share in re.findall(r"(\d+)%", said)]
+    assert shares == sorted(shares)
+    assert shares[-1] == 100
+    assert re.search(r"film\.mp4", said)
+    assert re.search(r"\d:\d\d:\d\d", said)
+    assert read(tmp_path / "film.mp4")
+
+
+@pytest.mark.gl
+@pytest.mark.parametrize("name", ["film.mp4", "face-%05d.png"])
+def test_an_interrupt_while_drawing_keeps_what_is_drawn(tmp_path, name):
+    with serve_later(tmp_path / name, 3.0, "640x480") as server:
+        said = ""
+        while not re.search(r"\s[1-9]\d?%", said):
+            said += server.stderr.read(1)
+            assert server.poll() is None, said
+        server.send_signal(signal.SIGINT)
+        server.communicate(timeout=120)
+    assert server.returncode != 0
+    if name == "film.mp4":
+        import av
+
+        with av.open(str(tmp_path / name)) as film:
+            count = sum(1 for _ in film.decode(video=0))
+    else:
+        from PIL import Image
+
+        paths = sorted(tmp_path.iterdir())
+        assert [path.name for path in paths] == [f"face-{number:05d}.png" for number in range(len(paths))]
+        count = len([Image.open(path).load() for path in paths])
+    assert 0 < count < 180
+
+
+def test_a_full_disk_is_told_and_nothing_is_left(tmp_path):
+    """The last write is the one that FFmpeg keeps to itself."""
+    whole = tmp_path / "whole.mp4"
+    subprocess.run([sys.executable, "-c", NOISE, str(whole), "99"], check=True, timeout=60)
+    limited = "import resource, sys; resource.setrlimit(resource.RLIMIT_FSIZE, (int(sys.argv[3]),) * 2)\n" + NOISE
+    for limit in (500, whole.stat().st_size // 2, whole.stat().st_size - 1):
+        path = tmp_path / f"{limit}.mp4"
+        command = [sys.executable, "-c", limited, str(path), "99", str(limit)]
+        done = subprocess.run(command, check=False, capture_output=True, text=True, timeout=60)
+        assert f"OutputError: {path}: expected to write it, got: File too large" in done.stderr
+        assert not path.exists()
 
 
 def test_no_frames_no_file(tmp_path):

@@ -1,5 +1,7 @@
+import numpy as np
 import pytest
 
+from agentface import Face
 from agentface.errors import GraphicsError
 from agentface.resources import data_folder
 from agentface.view.context import compile_program, open_context, read_source
@@ -23,6 +25,25 @@ def test_includes_are_put_in_once_and_lines_are_kept(tmp_path):
     assert [line for line in lines if line.startswith("float")] == ["float b;", "float a;", "float c;"]
     assert lines.index("#line 3 0") < lines.index("float c;")
     assert [path.name for path in source.files] == ["main.glsl", "a.glsl", "b.glsl"]
+
+
+def test_defines_come_behind_the_version_and_lines_are_kept(tmp_path):
+    (tmp_path / "main.glsl").write_text("// why\n#version 330 core\n#ifdef TWICE\nfloat a;\n#endif\n")
+    lines = read_source("main.glsl", tmp_path, ("TWICE", "FAST")).text.split("\n")
+    assert lines[1:5] == ["#version 330 core", "#define TWICE", "#define FAST", "#line 3 0"]
+    assert lines[5] == "#ifdef TWICE"
+    assert "#define" not in read_source("main.glsl", tmp_path).text
+
+
+@pytest.mark.gl
+def test_a_define_chooses_and_errors_keep_their_lines(context, tmp_path):
+    (tmp_path / "pass.glsl").write_text(NOTHING)
+    (tmp_path / "main.glsl").write_text(
+        "#version 330 core\nout vec4 c;\nvoid main() {\n#ifdef WRONG\n    c = nothing;\n#endif\n}\n"
+    )
+    compile_program(context, "pass.glsl", "main.glsl", tmp_path, ("RIGHT",)).release()
+    with pytest.raises(GraphicsError, match=r"main\.glsl:5"):
+        compile_program(context, "pass.glsl", "main.glsl", tmp_path, ("RIGHT", "WRONG"))
 
 
 def test_a_missing_include_names_the_line_that_wants_it(tmp_path):
@@ -62,17 +83,19 @@ def test_every_shader_compiles(context):
         "ribbon": ["ribbon"],
         "strand": ["strand"],
         "skin": ["skin"],
+        "skin_fast": ["skin_fast"],
         "atlas": ["atlas"],
-        "part": ["part"],
+        "part": ["part", "cloth"],
         "eye": ["eye"],
         "anchored": ["part", "cap"],
-        "screen": ["develop"],
+        "screen": ["background", "copy"],
     }
     folder = data_folder("shaders")
     assert {path.name.split(".")[0] for path in folder.glob("*.vert.glsl")} == {*fragments, "depth"}
     for vertex, used in fragments.items():
         for fragment in used:
-            compile_program(context, f"{vertex}.vert.glsl", f"{fragment}.frag.glsl").release()
+            for defines in ((), ("WRINKLED",)) if vertex.startswith("skin") else ((),):
+                compile_program(context, f"{vertex}.vert.glsl", f"{fragment}.frag.glsl", defines=defines).release()
     compile_program(context, "depth.vert.glsl", None).release()
 
 
@@ -85,3 +108,13 @@ def test_without_opengl_the_error_names_the_packages(monkeypatch):
     monkeypatch.setattr(moderngl, "create_context", refuse)
     with pytest.raises(GraphicsError, match=r"(?s)libEGL\.so not loaded.*apt-get install .*libegl1 libgl1"):
         open_context()
+
+
+@pytest.mark.gl
+def test_faces_in_turn_each_draw_in_their_own_context():
+    faces = [Face(name, compiled=False) for name in ("amber", "onyx")]
+    first = [face.render((64, 48)) for face in faces]
+    assert np.abs(first[0].astype(int) - first[1]).max() > 50
+    for _ in range(2):
+        for face, picture in zip(faces, first, strict=True):
+            np.testing.assert_array_equal(face.render((64, 48)), picture)

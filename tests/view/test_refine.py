@@ -54,6 +54,21 @@ def test_refined_heads_keep_their_vertices(face):
     assert (np.linalg.norm(placed - flat, axis=1) <= 0.25 * edge + 1e-7).all()
 
 
+@pytest.mark.parametrize("seed", range(3))
+def test_any_edges_may_be_cut_and_the_mesh_stays_closed(seed):
+    rng = np.random.default_rng(seed)
+    first = refine(FACES, len(OCTAHEDRON))
+    ball = first.positions(OCTAHEDRON, OCTAHEDRON)
+    finer = refine(first.triangles, len(ball), lambda ends: rng.random(len(ends)) < 0.5)
+    assert 0 < len(finer.ends) - len(ball) < 48  # of 48 edges
+    edges = np.concatenate([finer.triangles[:, [i, (i + 1) % 3]] for i in range(3)])
+    there, back = ({tuple(edge) for edge in way.tolist()} for way in (edges, edges[:, ::-1]))
+    assert there == back  # each edge once in either direction
+    assert len(there) == len(edges)
+    flat, before = area_and_volume(finer.mean(ball), finer.triangles), area_and_volume(ball, first.triangles)
+    assert flat == pytest.approx(before)
+
+
 @given(st.floats(0.1, 10), st.integers(0, 2**32 - 1))
 def test_normals_do_not_depend_on_scale_or_place(scale, seed):
     rng = np.random.default_rng(seed)

@@ -1,0 +1,56 @@
+// What the skin is like at a vertex or a pixel: its colour, and how much light gets there.
+uniform vec3 skin_tone;
+uniform vec3 lip_tint;
+uniform vec3 hair_colour;
+uniform float shine;
+uniform float mouth_front;  // z of the lips at rest
+uniform float mouth_light;  // how much light the lips let in
+
+const vec3 WRAP = vec3(0.36, 0.20, 0.14);  // how far light goes round the terminator, by channel
+const vec3 RIM_WRAP = vec3(0.1);
+
+// The skin's colour: tint is redness, eye socket, gloss, under the hair; blotches 0..1 is even at 0.5.
+vec3 complexion_colour(vec4 tint, float mouth, float wet, float blotches) {
+    vec3 c = skin_tone * mix(vec3(1.0), vec3(1.04, 0.94, 0.92), clamp(2.0 * blotches - 0.5, 0.0, 1.0));
+    c *= mix(vec3(1.0), vec3(1.03, 0.76, 0.74), tint.x * (0.8 * blotches + 0.6));
+    c *= mix(vec3(1.0), vec3(0.90, 0.80, 0.80), tint.y);
+    c = mix(c, vec3(0.34, 0.09, 0.08), mouth);
+    c = mix(c, mix(skin_tone, vec3(0.45, 0.15, 0.13), 0.5) * vec3(0.95, 0.72, 0.70), 0.75 * wet);
+    return mix(c, hair_colour, 0.875 * tint.w);
+}
+
+vec3 lip_colour() {
+    return mix(skin_tone * vec3(0.82, 0.50, 0.54), lip_tint, 0.35);
+}
+
+// How much of the surroundings' light arrives; inside the mouth by how far back it is.
+float sky_light(float ambient, float lip, float mouth, float z) {
+    float light = max(ambient, max(mix(0.40, 0.80, mouth_light) * lip, 0.32 * mouth));
+    return light * mix(1.0, 0.25 + 0.55 * smoothstep(-0.05, -0.005, z - mouth_front), mouth);
+}
+
+// Light that misses the surface bleeds through it, red the most: powers of about 0.7, 0.95 and 1.05.
+vec3 bled(float light) {
+    return vec3(mix(light, sqrt(light), 0.57), light, light);
+}
+
+// Cosines of a light for the channels: red follows the blurred normal, blue the sharp one.
+vec3 scattered(vec3 sharp, vec3 soft, vec3 l) {
+    return mix(vec3(dot(sharp, l)), vec3(dot(soft, l)), vec3(0.75, 0.35, 0.20));
+}
+
+float roughness(float gloss, float lip, float moist) {
+    return mix(mix(mix(0.56, 0.44, gloss), 0.34, lip), 0.24, moist);
+}
+
+// How much of the shine is seen.
+float sheen(float ambient, float mouth, float covered, float moist) {
+    return clamp(1.2 * max(ambient, 0.2 * mouth) - 0.15, 0.0, 1.0) * (1.0 - 0.7 * mouth) * (1.0 - 0.8 * covered) * mix(shine, 1.0, moist);
+}
+
+// The gloss of one light on one lobe.
+float glint(vec3 n, vec3 l, vec3 view, float n_v, float rough, float f0) {
+    vec3 h = normalize(l + view);
+    float n_l = max(dot(n, l), 0.0);
+    return PI * n_l * ggx(max(dot(n, h), 0.0), rough) * visibility(n_l, n_v, 0.9 * rough) * fresnel(f0, max(dot(view, h), 0.0));
+}

@@ -1,0 +1,211 @@
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+
+from agentface.cli import cli
+from agentface.errors import GraphicsError
+from agentface.face import Face
+
+HEAD = (
+    '<emotionml version="1.0" xmlns="http://www.w3.org/2009/10/emotionml"'
+    ' category-set="http://www.w3.org/TR/emotion-voc/xml#big6">'
+)
+SHORT = '<emotion duration="250"><category name="surprise"/></emotion>'
+SMALL = ("--size", "64x64", "--fps", "10")
+
+
+@pytest.fixture
+def short(tmp_path):
+    path = tmp_path / "short.xml"
+    path.write_text(f"{HEAD}{SHORT}</emotionml>")
+    return path
+
+
+def call(*arguments):
+    return CliRunner().invoke(cli, ["play", *map(str, arguments)], prog_name="agentface")
+
+
+def fail(*arguments, code=1):
+    result = call(*arguments)
+    assert result.exit_code == code, result.output
+    assert isinstance(result.exception, SystemExit)
+    return result.stderr
+
+
+def frames(path):
+    import av
+
+    with av.open(str(path)) as film:
+        return [(float(frame.time), frame.to_ndarray(format="rgb24")) for frame in film.decode(video=0)]
+
+
+@pytest.mark.gl
+def test_a_film_has_a_frame_at_every_step_and_is_the_same_twice(short, tmp_path):
+    films = [tmp_path / f"{name}.mp4" for name in "ab"]
+    for film in films:
+        result = call(short, "-o", film, *SMALL)
+        assert result.exit_code == 0, result.output
+    shown = frames(films[0])
+    assert [time for time, _ in shown] == pytest.approx([0.0, 0.1, 0.2, 0.3, 0.4], abs=1e-4)
+    assert films[0].read_bytes() == films[1].read_bytes()
+
+
+@pytest.mark.gl
+def test_a_film_shows_what_the_document_says_from_neutral_to_neutral(monkeypatch, short, tmp_path):
+    levels = []
+    render = Face.render
+
+    def noted(face, *arguments, **options):
+        levels.append(face.status()["shown"]["emotion"]["surprise"])
+        return render(face, *arguments, **options)
+
+    monkeypatch.setattr(Face, "render", noted)
+    assert call(short, "-o", tmp_path / "a.mp4", "--size", "64x64", "--fps", "60").exit_code == 0
+    assert len(levels) == len(frames(tmp_path / "a.mp4")) == 30
+    assert levels[0] == 0.0
+    assert max(levels) == levels[15] == 1.0, "a quarter of a second after its start the emotion is there"
+    assert levels[-1] < 0.01
+
+
+@pytest.mark.gl
+def test_a_film_of_numbered_pictures_is_transparent(short, tmp_path):
+    from PIL import Image
+
+    result = call(short, "-o", tmp_path / "face-%03d.png", *SMALL, "--camera", "profile", "--look", "ginger")
+    assert result.exit_code == 0, result.output
+    names = sorted(path.name for path in tmp_path.glob("*.png"))
+    assert names == [f"face-{number:03d}.png" for number in range(5)]
+    with Image.open(tmp_path / names[0]) as picture:
+        assert np.asarray(picture)[0, 0, 3] == 0
+
+
+@pytest.mark.gl
+@pytest.mark.parametrize(("error", "code", "left"), [(GraphicsError("lost"), 1, None), (KeyboardInterrupt(), 130, 3)])
+def test_an_error_leaves_no_file_and_an_interrupt_what_was_filmed(monkeypatch, short, tmp_path, error, code, left):
+    steps = iter([None, None, error])
+    step = Face.step
+
+    def failing(face, dt):
+        if (failure := next(steps)) is not None:
+            raise failure
+        return step(face, dt)
+
+    monkeypatch.setattr(Face, "step", failing)
+    path = tmp_path / "a.mp4"
+    said = fail(short, "-o", path, *SMALL, code=code)
+    assert path.exists() == (left is not None)
+    if left is None:
+        assert "lost" in said
+    else:
+        assert len(frames(path)) == left
+        assert f"{path}: stopped at 0.2 s of 0.5 s" in said
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        (f"{HEAD}\n<emotion>\n<category name='joy'/></emotion></emotionml>", ":3: emotion 1.category joy: expected"),
+        (f"{HEAD}</emotionml>", "at least one emotion"),
+        ("<emotionml>", ":1: expected well-formed XML"),
+    ],
+)  # fmt: skip
+def test_a_document_with_faults_is_told_before_anything_is_done(tmp_path, text, message):
+    path = tmp_path / "moods.xml"
+    path.write_text(text)
+    said = fail(path, "-o", tmp_path / "a.mp4")
+    assert said.startswith(f"{path}:")
+    assert message in said
+    assert list(tmp_path.iterdir()) == [path]
+
+
+def test_a_film_that_cannot_be_written(short, tmp_path):
+    assert "no folder" in fail(short, "-o", tmp_path / "no" / "a.mp4")
+    assert ".mp4" in fail(short, "-o", tmp_path / "a.avi")
+    assert "even" in fail(short, "-o", tmp_path / "a.mp4", "--size", "63x64")
+    assert "known: amber, onyx" in fail(short, "-o", tmp_path / "a.mp4", "--face", "nobody")
+    assert list(tmp_path.iterdir()) == [short]
+
+
+def test_other_files(tmp_path):
+    assert "all that this version plays" in fail(tmp_path / "marco.fap")
+    assert "a readable file" in fail(tmp_path / "none.xml")
+
+
+def test_usage(short, tmp_path):
+    fail(code=2)
+    assert "--fps goes with -o" in fail(short, "--fps", "30", code=2)
+    assert "--size goes with -o" in fail(short, "--size", "64x64", code=2)
+    assert "--loop goes without -o" in fail(short, "--loop", "-o", tmp_path / "a.mp4", code=2)
+    fail(short, "--fps", "0", code=2)
+
+
+def test_check_knows_emotionml(short, tmp_path):
+    check = CliRunner().invoke(cli, ["check", str(short)])
+    assert (check.exit_code, check.stdout) == (0, f"{short}: good\n")
+    wrong = tmp_path / "wrong.xml"
+    wrong.write_text(f"{HEAD}\n<emotion strat='1'><category name='joy'/></emotion></emotionml>")
+    check = CliRunner().invoke(cli, ["check", str(wrong)])
+    assert check.exit_code == 1
+    assert f"{wrong}: 2 faults" in check.stdout
+    assert f"{wrong}:2: emotion 1: expected no such attribute" in check.stdout
+
+
+def without_a_display():
+    return {name: value for name, value in os.environ.items() if name not in ("DISPLAY", "WAYLAND_DISPLAY")}
+
+
+def test_without_a_display_it_says_how_to_film(short):
+    pytest.importorskip("glfw")
+    command = [sys.executable, "-m", "agentface", "play", str(short)]
+    done = subprocess.run(command, check=False, capture_output=True, text=True, timeout=120, env=without_a_display())
+    assert done.returncode == 1
+    assert "expected a display" in done.stderr
+    assert f"agentface play {short} -o FILE.mp4" in done.stderr
+    assert "Traceback" not in done.stderr
+
+
+WATCHED = """
+import sys
+from agentface.cli import cli
+from agentface.face import Face
+
+set_emotion = Face.set_emotion
+
+def told(face, state, fade):
+    print({name: level for name, level in state.items() if level}, fade, flush=True)
+    set_emotion(face, state, fade=fade)
+
+Face.set_emotion = told
+cli(["play", *sys.argv[1:]])
+"""
+
+
+@pytest.mark.gl
+@pytest.mark.slow
+@pytest.mark.skipif(not shutil.which("xvfb-run"), reason="no virtual display on this machine (Debian: xvfb, xauth)")
+def test_the_window_plays_the_document_and_closes(tmp_path):
+    pytest.importorskip("glfw")
+    path = tmp_path / "moods.xml"
+    path.write_text(f"{HEAD}{SHORT.replace('250', '1500')}</emotionml>")
+    command = [
+        "xvfb-run",
+        "--auto-servernum",
+        sys.executable,
+        "-W",
+        "error",
+        "-c",
+        WATCHED,
+        str(path),
+        "--camera",
+        "profile",
+    ]
+    done = subprocess.run(command, check=False, capture_output=True, text=True, timeout=120, env=without_a_display())
+    assert done.returncode == 0, done.stderr
+    assert [line for line in done.stdout.splitlines() if "{" in line] == ["{'surprise': 1.0} 0.25", "{} 0.25"]
