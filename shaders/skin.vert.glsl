@@ -8,7 +8,7 @@
 #include "skin_place.glsl"
 
 centroid out vec3 position, normal, blurred_normal, rest_position;
-centroid out vec3 colour_here, around;  // albedo without lips; light from everywhere but key and fill
+centroid out vec3 colour_here, around, shine_around;  // albedo without lips; light, and gloss, of all but the key
 centroid out vec4 matter;               // lip, inside of the mouth, wet lid margin, gloss
 centroid out vec3 light_here;           // how much of the surroundings' light arrives; shine; under the hair
 #ifdef WRINKLED
@@ -33,7 +33,13 @@ void main() {
     light_here = vec3(sky, sheen(ambient, mouth, complexion.w, max(lip, wet)), complexion.w);
     vec3 soft = normalize(blurred_normal);
     around = hemisphere(soft);
-    for (int i = 2; i < LIGHTS; i++)
-        around += light_colour[i].rgb * wrapped(scattered(normal, soft, light_direction[i].xyz), RIM_WRAP);
+    vec3 view = normalize(eye_point.xyz - position), wrap = WRAP * (1.0 - 0.6 * mouth);
+    float n_v = max(dot(normal, view), 0.02), rough = 0.9 * roughness(complexion.z, lip, max(mouth, wet)), f0 = mix(0.026, 0.036, max(lip, wet));
+    shine_around = hemisphere(reflect(-view, normal)) * fresnel(f0, n_v) * 0.5;
+    for (int i = 1; i < LIGHTS; i++) {
+        vec3 l = light_direction[i].xyz;
+        around += light_colour[i].rgb * wrapped(scattered(normal, soft, l), i == 1 ? wrap : RIM_WRAP);
+        shine_around += light_colour[i].rgb * glint(normal, l, view, n_v, rough, f0);
+    }
     around *= bled(sky);
 }

@@ -19,9 +19,7 @@ void main() {
     vec3 key = light_direction[0].xyz, h = normalize(key + view);
 #ifdef WRINKLED
     vec4 raised = wrinkled_normal(n, position, atlas);
-    vec2 facing = vec2(dot(raised.xyz, key), dot(n, key));
-    facing = max(facing, -0.2) + 0.8;
-    light *= facing.x / facing.y * (1.0 - CREASE_SHADE * raised.w);
+    light *= wrinkle_shade(n, raised, key);
     n = raised.xyz;
 #endif
     float grain = noise(rest_position * 37.0).g - 0.5, n_l = max(dot(n, key), 0.0), n_v = max(dot(n, view), 0.02);

@@ -4,6 +4,12 @@ uniform sampler2D wrinkle_atlas;  // metres of height; 0..1 how near a crease is
 
 const float CREASE_SHADE = 0.5;   // of the light that the bottom of a crease misses
 
+// What wrinkles make of light from l on skin with the normal n.
+float wrinkle_shade(vec3 n, vec4 raised, vec3 l) {
+    vec2 facing = max(vec2(dot(raised.xyz, l), dot(n, l)), -0.2) + 0.8;
+    return facing.x / facing.y * (1.0 - CREASE_SHADE * raised.w);
+}
+
 // The normal of the skin with its wrinkles: Mikkelsen's surface gradient (2010), from differences over a pixel, or
 // over a texel and a half where that is more. w: the crease.
 vec4 wrinkled_normal(vec3 n, vec3 place, vec2 at) {

@@ -114,6 +114,7 @@ def test_render_checks_its_output_first(tmp_path, name):
         ["--size", "big"],
         ["--size", "0x10"],
         ["--gaze", "1"],
+        ["--gaze", "1,2", "--look-at", "0,0,1"],
         ["--camera", "behind"],
         ["--quality", "best"],
         ["--jaw", "wide"],

@@ -5,26 +5,37 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import Annotated, TypeVar
+from typing import Annotated
 
 import numpy as np
-from pydantic import Field
+from pydantic import AfterValidator, Field
 
 from agentface.anatomy.glb import MeshArrays, Shape, read_glb
 from agentface.anatomy.landmarks import Landmarks, load_landmarks
-from agentface.anatomy.lids import LidMotion
 from agentface.anatomy.muscle_set import MuscleSet
 from agentface.anatomy.muscles import MusclesFile, place_muscles, read_muscles
-from agentface.anatomy.orbicularis_oris import LipsMotion
 from agentface.anatomy.regions import Regions, load_regions
+from agentface.anatomy.rings import EyelidsFile, LipsFile, load_rings
 from agentface.anatomy.wrinkles import PlacedTrain, WrinklesFile, place_trains, read_wrinkles
-from agentface.config import Document, Table, load
+from agentface.config import Table, load
 from agentface.conventions import SIDES, Floats, Indices
 from agentface.errors import DataError, Fault
 from agentface.resources import DEFAULT_FACE, face_folder
 
-_Point = Annotated[list[float], Field(min_length=3, max_length=3)]
+_Point = Annotated[list[Annotated[float, Field(ge=-0.3, le=0.3)]], Field(min_length=3, max_length=3)]
 PARTS = ("teeth_upper", "teeth_lower", "tongue", "eye_l", "eye_r")
+
+
+def _left(centre: list[float]) -> list[float]:
+    if not 0.01 <= centre[0] <= 0.1:
+        raise ValueError("expected an x of 0.01 to 0.1 m: the left eye")
+    return centre
+
+
+def _in_the_middle(pivot: list[float]) -> list[float]:
+    if pivot[0] != 0.0:
+        raise ValueError("expected an x of 0: a point in the median plane")
+    return pivot
 
 
 class EyeHole(Table):
@@ -37,37 +48,15 @@ class EyeHole(Table):
 class EyesFile(EyeHole):
     """``eyes.yaml``: the left eyeball in metres, and how far the eyes turn."""
 
-    centre: _Point
-    radius: Annotated[float, Field(gt=0)]
+    centre: Annotated[_Point, AfterValidator(_left)]
+    radius: Annotated[float, Field(ge=0.003, le=0.05)]
 
 
 class JawFile(Table):
     """``jaw.yaml``: a point of the hinge in metres (the axis is parallel to X) and the widest opening."""
 
-    pivot: _Point
+    pivot: Annotated[_Point, AfterValidator(_in_the_middle)]
     widest_deg: Annotated[float, Field(gt=0, le=60)]
-
-
-class RingHalves(Table):
-    """One ring of vertices: the upper and the lower half, each from +x to -x with both ends."""
-
-    upper: list[int]
-    lower: list[int]
-
-
-class LipsFile(LipsMotion):
-    """``lips.yaml``: rings round the mouth, from the seam outward, and the ring muscle of the mouth."""
-
-    rings: Annotated[list[RingHalves], Field(min_length=1)]
-
-
-class EyelidsFile(LidMotion):
-    """``eyelids.yaml``: rings round each eye, from the lid's inner margin outward, and how the lids move."""
-
-    rings: dict[str, Annotated[list[RingHalves], Field(min_length=1)]]
-
-
-_Rings = TypeVar("_Rings", LipsFile, EyelidsFile)
 
 
 @dataclass(frozen=True, eq=False)
@@ -154,8 +143,8 @@ def load_model(face: str | Path = DEFAULT_FACE, muscles: MusclesFile | None = No
         landmarks=load_landmarks(folder / "feature_points.yaml", vertices, pupils),
         eyes=eyes,
         jaw=load(folder / "jaw.yaml", JawFile),
-        lips=load_rings(folder / "lips.yaml", LipsFile, len(vertices)),
-        eyelids=load_rings(folder / "eyelids.yaml", EyelidsFile, len(vertices)),
+        lips=load_rings(folder / "lips.yaml", LipsFile, skin),
+        eyelids=load_rings(folder / "eyelids.yaml", EyelidsFile, skin),
         muscles_file=muscles or read_muscles(folder / "muscles.yaml"),
         wrinkles_file=read_wrinkles(folder / "wrinkles.yaml"),
     )
@@ -168,23 +157,6 @@ def _pupil(eyes: EyesFile, side: str) -> Floats:
 
 def _fractions(mesh: MeshArrays, attribute: str) -> Floats:
     return mesh.attributes[attribute].astype(np.float32) / np.float32(255)
-
-
-def load_rings(path: Path, model: type[_Rings], vertex_count: int) -> _Rings:
-    """Read ``lips.yaml`` or ``eyelids.yaml``; raises DataError when a ring names a vertex the mesh does not have."""
-    document = Document(path)
-    file = document.parse(model)
-    groups = file.rings.items() if isinstance(file, EyelidsFile) else [("", file.rings)]
-    if isinstance(file, EyelidsFile) and set(file.rings) != set(SIDES):
-        document.fault(("rings",), "the keys l and r", ", ".join(file.rings))
-    for side, rings in groups:
-        for i, ring in enumerate(rings):
-            bad = [vertex for vertex in ring.upper + ring.lower if not 0 <= vertex < vertex_count]
-            if bad:
-                where = ("rings", side, i) if side else ("rings", i)
-                document.fault(where, f"vertices in 0..{vertex_count - 1}", str(bad[:4]))
-    document.check()
-    return file
 
 
 def _checked_skin(path: Path, meshes: dict[str, MeshArrays]) -> MeshArrays:

@@ -149,7 +149,7 @@ def border_weights(
 
 def off_the_bone(vertices: Floats | Doubles, origin: Doubles, insertion: Doubles) -> Floats:
     """``(M, V)`` weights: skin over a muscle's attachment is not drawn into its apex, where it would pinch."""
-    length = np.linalg.norm(insertion - origin, axis=1)
+    length = np.maximum(np.linalg.norm(insertion - origin, axis=1), 1e-9)  # MuscleSet refuses a muscle of no length
     distance = np.linalg.norm(vertices[None].astype(np.float32) - origin[:, None].astype(np.float32), axis=2)
     t = np.clip(distance / (_AT_THE_BONE * length[:, None]), 0.0, 1.0)
     return (t * t * (3.0 - 2.0 * t)).astype(np.float32)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from typing import Annotated, Generic, TypeVar
 
 import numpy as np
 from pydantic import Field
@@ -10,29 +10,32 @@ from pydantic import Field
 from agentface.config import Table
 from agentface.conventions import Doubles
 
-_Rows = Annotated[list[float], Field(min_length=6, max_length=6)]
+_Number = TypeVar("_Number", bound=float)
+_Turn = Annotated[float, Field(ge=-90, le=90)]
+_Way = Annotated[float, Field(ge=-1, le=1)]
+_Reach = Annotated[float, Field(ge=0.01, le=2)]
 _Share = Annotated[float, Field(ge=0, le=1)]
 _Shares = Annotated[list[_Share], Field(min_length=6, max_length=6)]
 
 
-class RoundMouth(Table):
-    """A number in the middle of the upper lip, in the middle of the lower lip and at the corners."""
+class ReachRoundMouth(Table):
+    """A distance in the middle of the upper lip, in the middle of the lower lip and at the corners."""
 
-    upper: float
-    lower: float
-    corner: float
+    upper: _Reach
+    lower: _Reach
+    corner: _Reach
 
     def at(self, turn: Doubles) -> Doubles:
-        """The number at the angles ``turn`` (0 at the left corner, a quarter turn in the upper lip's middle)."""
+        """The distance at the angles ``turn`` (0 at the left corner, a quarter turn in the upper lip's middle)."""
         return _blend(turn, np.array(self.upper), np.array(self.lower), np.array(self.corner))
 
 
-class RowsRoundMouth(Table):
-    """As :class:`RoundMouth`, with a number for each row of control points, from inside the mouth out to the skin."""
+class RowsRoundMouth(Table, Generic[_Number]):
+    """As :class:`ReachRoundMouth`, with a number for each row of control points, from inside the mouth outward."""
 
-    upper: _Rows
-    lower: _Rows
-    corner: _Rows
+    upper: Annotated[list[_Number], Field(min_length=6, max_length=6)]
+    lower: Annotated[list[_Number], Field(min_length=6, max_length=6)]
+    corner: Annotated[list[_Number], Field(min_length=6, max_length=6)]
 
     def at(self, turn: Doubles) -> Doubles:
         """``(N, 6)``: the numbers at the angles ``turn (N,)``."""
@@ -66,8 +69,8 @@ class LipContraction(Table):
     """
 
     ellipse: MouthEllipse
-    rotation_deg: RowsRoundMouth
-    extrusion: RowsRoundMouth
+    rotation_deg: RowsRoundMouth[_Turn]
+    extrusion: RowsRoundMouth[_Way]
 
 
 class OrbicularisOrisTable(Table):
@@ -79,7 +82,7 @@ class OrbicularisOrisTable(Table):
         pucker, press, roll: the contractions.
     """
 
-    reach: RoundMouth
+    reach: ReachRoundMouth
     roll_from: Annotated[float, Field(ge=0, lt=1)]
     pucker: LipContraction
     press: LipContraction

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import numpy as np
 from pydantic import Field
 
 from agentface.config import Document, Table
 from agentface.conventions import SIDES, Bytes
-from agentface.errors import UnknownNameError
+from agentface.errors import UnknownNameError, did_you_mean
 
 HALF_REGIONS = ("lower_face", "middle_face", "lower_eyelid", "upper_eyelid", "upper_face")
 REST = "rest_of_head"
@@ -24,6 +24,7 @@ LIMITED: tuple[str, ...] = (*HALF_REGIONS, *SUB_REGIONS, REST)
 """What has a limit of its own: regions and sub-regions without their side, and the rest of the head."""
 
 _Range = Annotated[list[int], Field(min_length=2, max_length=2)]
+_Ends = tuple[int, int]
 Limits = dict[str, Annotated[float, Field(gt=0, le=1)]]
 """How far muscles may move the skin of each region of ``LIMITED``, in eye separations."""
 
@@ -76,21 +77,17 @@ def with_sides(name: str) -> tuple[str, ...]:
 def load_regions(path: Path, vertex_count: int) -> Regions:
     """Read ``regions.yaml``; raises DataError when ranges overlap, leave a gap or do not fit the mesh."""
     document = Document(path)
-    file = document.parse(RegionsFile)
-    if file.vertices != vertex_count:
+    file = document.collect(RegionsFile)
+    tables = document.data if isinstance(document.data, dict) else {}
+    if file is not None and file.vertices != vertex_count:
         document.fault(("vertices",), f"{vertex_count}, as in head.glb", str(file.vertices))
-    _check_names(document, "regions", file.regions, REGIONS)
     subs = tuple(f"{name}_{side}" for name in SUB_REGIONS for side in SIDES)
-    _check_names(document, "sub_regions", file.sub_regions, subs)
-    _check_cover(document, file.regions, vertex_count)
-    for name, (first, last) in file.sub_regions.items():
-        owner = f"{SUB_REGIONS.get(name[:-2], '')}{name[-2:]}"
-        low, high = file.regions.get(owner, [0, -1])
-        if first > last or not (low <= first and last <= high):
-            document.fault(("sub_regions", name), f"a range inside {owner}, {low}..{high}", f"{first}..{last}")
-    for name in sorted(file.limits.keys() ^ set(LIMITED)):
-        document.fault(("limits",), f"a limit for each of {', '.join(LIMITED)}", f"{name} missing or unknown")
+    _check_names(document, "regions", tables, REGIONS, "a range")
+    _check_names(document, "sub_regions", tables, subs, "a range")
+    _check_names(document, "limits", tables, LIMITED, "a limit")
+    _check_ranges(document, _ranges(tables.get("regions")), _ranges(tables.get("sub_regions")), vertex_count)
     document.check()
+    assert file is not None, "a document without faults is parsed"  # noqa: S101 - for the type checker
     region_of = np.empty(vertex_count, np.uint8)
     for index, name in enumerate(REGIONS):
         first, last = file.regions[name]
@@ -99,14 +96,38 @@ def load_regions(path: Path, vertex_count: int) -> Regions:
     return Regions(region_of, ranges, dict(file.limits))
 
 
-def _check_names(document: Document, key: str, found: dict[str, list[int]], known: tuple[str, ...]) -> None:
-    for name in found.keys() - set(known):
-        document.fault((key, name), f"one of {', '.join(known)}", name)
-    for name in set(known) - found.keys():
-        document.fault((key,), f"a range for {name}", "none")
+def _check_names(document: Document, key: str, tables: dict[str, Any], known: tuple[str, ...], what: str) -> None:
+    table = tables.get(key)
+    if not isinstance(table, dict):
+        return
+    for name in sorted(map(str, table.keys() - set(known))):
+        document.fault((key, name), f"one of {', '.join(known)}", name, did_you_mean(name, known))
+    for name in sorted(set(known) - table.keys()):
+        document.fault((key,), f"{what} for {name}", "none")
 
 
-def _check_cover(document: Document, ranges: dict[str, list[int]], vertex_count: int) -> None:
+def _ranges(table: Any) -> dict[str, _Ends] | None:
+    """The ranges of a table as it was read, or None where one of them is none: the others would seem to leave gaps."""
+    rows = table.values() if isinstance(table, dict) else [None]
+    if not all(isinstance(row, list) and len(row) == 2 and all(type(end) is int for end in row) for row in rows):
+        return None
+    return {str(name): (row[0], row[1]) for name, row in table.items()}
+
+
+def _check_ranges(
+    document: Document, regions: dict[str, _Ends] | None, subs: dict[str, _Ends] | None, vertex_count: int
+) -> None:
+    if regions is None:
+        return
+    _check_cover(document, regions, vertex_count)
+    for name, (first, last) in (subs or {}).items():
+        owner = f"{SUB_REGIONS.get(name[:-2], '')}{name[-2:]}"
+        low, high = regions.get(owner, (0, -1))
+        if first > last or not (low <= first and last <= high):
+            document.fault(("sub_regions", name), f"a range inside {owner}, {low}..{high}", f"{first}..{last}")
+
+
+def _check_cover(document: Document, ranges: dict[str, _Ends], vertex_count: int) -> None:
     due = 0
     for name, (first, last) in sorted(ranges.items(), key=lambda item: item[1]):
         if first < due:

@@ -10,9 +10,10 @@ import numpy as np
 import numpy.typing as npt
 
 from agentface.anatomy.glb import Shape
-from agentface.anatomy.model import EyelidsFile, HeadModel, LipsFile, RingHalves
+from agentface.anatomy.model import HeadModel
 from agentface.anatomy.muscle_set import MuscleSet
 from agentface.anatomy.regions import HALF_REGIONS, REGIONS, REST, SUB_REGIONS
+from agentface.anatomy.rings import EyelidsFile, LipsFile, RingHalves
 from agentface.conventions import SIDES, Floats, Indices
 
 _ON_MIDLINE = 1e-9  # m

@@ -24,7 +24,9 @@ from agentface.parameters import MUSCLES, VECTOR_MUSCLES, indices_of
 
 _Part = Annotated[float, Field(ge=0, le=1)]
 _SHORTEST = 0.01  # eye separations, of a train
-_Direction = Annotated[list[float], Field(min_length=3, max_length=3)]
+_APART = "a point beside start, seen along facing"
+_SLANT = 1e-3  # the least length of a direction
+_Direction = Annotated[list[Annotated[float, Field(ge=-100, le=100)]], Field(min_length=3, max_length=3)]
 
 
 class TrainRow(Territory, Wrinkles):
@@ -101,13 +103,40 @@ def _check_row(document: Document, name: str, row: dict[str, Any]) -> None:
         for i, item in enumerate(row[key] if isinstance(row.get(key), list) else []):
             if item not in names:
                 document.fault((*where, key, i), what, str(item), did_you_mean(str(item), names))
-    if isinstance(row.get("facing"), list) and not any(row["facing"]):
+    facing = _numbers(row.get("facing", [0.0, 0.0, 1.0]))
+    if facing is not None and np.linalg.norm(facing) < _SLANT:
         document.fault((*where, "facing"), "a direction", str(row["facing"]))
+        facing = None
     for key in ("start", "end"):
         at = row[key].get("at") if isinstance(row.get(key), dict) else None
         if isinstance(at, str) and at not in landmarks:
             hint = did_you_mean(at, landmarks)
             document.fault((*where, key, "at"), "a landmark (paired ones without side)", at, hint)
+    if facing is not None:
+        _check_way(document, where, row, facing)
+
+
+def _check_way(document: Document, where: tuple[str, str], row: dict[str, Any], facing: Doubles) -> None:
+    """A way between two offsets from one landmark is known without the face."""
+    start, end = (row[key] if isinstance(row.get(key), dict) else {} for key in ("start", "end"))
+    offsets = [_numbers(anchor.get("offset", [0.0, 0.0, 0.0])) for anchor in (start, end)]
+    if start.get("at") is None or start.get("at") != end.get("at") or offsets[0] is None or offsets[1] is None:
+        return
+    if np.linalg.norm(_beside(offsets[1] - offsets[0], _unit(facing))) <= _SHORTEST:
+        document.fault((*where, "end"), _APART, f"{end['at']} {offsets[1].tolist()}")
+
+
+def _numbers(values: Any) -> Doubles | None:
+    """Three finite numbers as they were read, or None for what the table's model refuses anyway."""
+    if not isinstance(values, list) or len(values) != 3 or not all(type(value) in (int, float) for value in values):
+        return None
+    return np.array(values, np.float64) if max(map(abs, values)) <= 100 else None
+
+
+def _beside(way: Doubles, facing: Doubles) -> Doubles:
+    """The part of a way that is seen along ``facing``, a unit vector."""
+    beside: Doubles = way - (way @ facing) * facing
+    return beside
 
 
 def place_trains(
@@ -155,10 +184,9 @@ def _drawn_train(name: str, row: TrainRow, side: str, landmarks: Landmarks) -> D
     unit, sign = landmarks.eye_separation, 1.0 if side == SIDES[0] else -1.0
     start, end = (anchor_point(anchor, side, landmarks) for anchor in (row.start, row.end))
     facing = _unit(np.array(row.facing) * [sign, 1.0, 1.0])
-    way = end - start
-    way = way - (way @ facing) * facing
+    way = _beside(end - start, facing)
     if not np.linalg.norm(way) > _SHORTEST * unit:
-        raise InvalidValueError(f"wrinkles.yaml: {name}.end", "a point beside start, seen along facing", row.end)
+        raise InvalidValueError(f"wrinkles.yaml: trains.{name}.end", _APART, f"{row.end.at} {row.end.offset}")
     along = _unit(way)
     return DrawnTrain(
         start=start,

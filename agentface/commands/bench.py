@@ -17,10 +17,15 @@ from agentface.commands.options import face_options, json_option, write_json
 def bench(*, name: str | None, json_file: str | None, face: str, deformer: str) -> None:
     """Run one benchmark, or all: deform, fuzzy, papers, frame, crowd, render."""
     from agentface.bench import BENCHES
+    from agentface.errors import UnknownNameError
     from agentface.face import check_deformer
+    from agentface.resources import face_folder
 
     check_deformer(deformer)
-    figures = _measured(name, face) if name else {each: _measured(each, face) for each in BENCHES}
+    if name is not None and name not in BENCHES:
+        raise UnknownNameError("benchmark", name, tuple(BENCHES))
+    face_folder(face)
+    figures = _measured(name, face) if name is not None else {each: _measured(each, face) for each in BENCHES}
     if json_file is not None:
         write_json(json_file, figures)
         return
@@ -31,7 +36,7 @@ def bench(*, name: str | None, json_file: str | None, face: str, deformer: str) 
 def _measured(name: str, face: str) -> dict[str, Any]:
     from agentface.bench import BENCHES, run
 
-    click.echo(f"measuring {BENCHES.get(name, name)} …", err=True)
+    click.echo(f"measuring {BENCHES[name]} …", err=True)
     return run(name, face)
 
 

@@ -4,10 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
 
-from agentface.errors import DataError, Fault
+from agentface.errors import DataError, Fault, InvalidValueError
+
+if TYPE_CHECKING:
+    from agentface.anatomy.glb import MeshArrays
 
 _Reader = Callable[[Path], object]
 
@@ -88,9 +92,11 @@ def _rule_readers() -> dict[str, _Reader]:
 
 def _face_readers() -> dict[str, _Reader]:
     from agentface.anatomy.glb import read_glb
-    from agentface.anatomy.model import EyelidsFile, EyesFile, JawFile, LipsFile, load_rings
+    from agentface.anatomy.model import EyesFile, JawFile
     from agentface.anatomy.muscles import read_muscles
     from agentface.anatomy.regions import load_regions
+    from agentface.anatomy.rings import EyelidsFile, LipsFile, load_rings
+    from agentface.anatomy.wrinkles import read_wrinkles
     from agentface.config import load
     from agentface.view.look import read_look
 
@@ -99,10 +105,11 @@ def _face_readers() -> dict[str, _Reader]:
         "regions.yaml": lambda path: load_regions(path, _vertex_count(path)),
         "muscles.yaml": read_muscles,
         "feature_points.yaml": _read_landmarks,
-        "lips.yaml": lambda path: load_rings(path, LipsFile, _vertex_count(path)),
-        "eyelids.yaml": lambda path: load_rings(path, EyelidsFile, _vertex_count(path)),
+        "lips.yaml": lambda path: load_rings(path, LipsFile, _skin_beside(path)),
+        "eyelids.yaml": lambda path: load_rings(path, EyelidsFile, _skin_beside(path)),
         "jaw.yaml": lambda path: load(path, JawFile),
         "eyes.yaml": lambda path: load(path, EyesFile),
+        "wrinkles.yaml": read_wrinkles,
         "look.yaml": read_look,
     }
 
@@ -118,16 +125,45 @@ def _read_landmarks(path: Path) -> object:
 
 
 def _vertex_count(beside: Path) -> int:
+    return len(_skin_beside(beside).attributes["POSITION"])
+
+
+def _skin_beside(beside: Path) -> MeshArrays:
     from agentface.anatomy.glb import read_glb
 
     path = beside.parent / "head.glb"
     meshes = read_glb(path)
     if "skin" not in meshes:
         raise DataError([Fault(path, None, "skin", "a mesh of this name", "none")])
-    return len(meshes["skin"].attributes["POSITION"])
+    return meshes["skin"]
 
 
-def _whole_face(folder: Path) -> object:
+def _whole_face(folder: Path) -> None:
+    """What only the files together show: whether muscles, wrinkles, lips, lids and the rest can be made of them."""
     from agentface.anatomy.model import load_model
+    from agentface.deform import frame
 
-    return load_model(folder).muscles
+    model = load_model(folder)
+    found: list[Fault] = []
+    for make in (lambda: model.muscles, lambda: model.trains, lambda: frame.prepare(model)):
+        try:
+            make()
+        except InvalidValueError as error:
+            found.append(_located(folder, error))
+    if found:
+        raise DataError(list(dict.fromkeys(found)))
+
+
+def _located(folder: Path, error: InvalidValueError) -> Fault:
+    """The fault behind an error that names ``lips.yaml``, or ``lips.yaml: rings.3``, or ``muscle risorius_l: zone``."""
+    from agentface.config import Document
+
+    name, _, where = error.where.partition(": ")
+    if name.startswith("muscle "):
+        where = f"muscles.{name.removeprefix('muscle ')[:-2]}.{where}"
+        name = "muscles.yaml"
+    path = folder / name
+    if not path.is_file():
+        return Fault(folder, None, error.where, error.expected, str(error.got), error.hint)
+    line = Document(path).line(tuple(where.split("."))) if path.suffix == ".yaml" else None
+    return Fault(path, line, where, error.expected, str(error.got), error.hint)

@@ -68,6 +68,8 @@ def render(
     from agentface.io.files import check_writable
     from agentface.io.picture import check_picture_name, write_picture
 
+    if gaze is not None and look_at is not None:
+        raise click.UsageError("--gaze and --look-at both say where the eyes look: give one of them")
     check_picture_name(output, alpha=alpha)
     check_writable(output)
     shown = make_face(face, deformer, compiled=False, look=look)  # one frame does not pay for loading the compiler

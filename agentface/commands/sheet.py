@@ -67,6 +67,7 @@ def sheet(
     from rich.console import Console
     from rich.progress import track
 
+    from agentface.figures.sheet import check_sheet_size
     from agentface.figures.sheet import sheet as contact_sheet
     from agentface.io.files import check_writable
     from agentface.io.picture import check_picture_name, write_picture
@@ -76,11 +77,12 @@ def sheet(
     shown: Poses = [_pose(text) for text in poses]
     if emotions or not poses:
         shown += _by_level(emotions, levels)
+    width = columns or (min(4, len(shown)) if poses else len(levels))
+    check_sheet_size(size, len(shown), width)
     drawn = make_face(face, deformer, compiled=len(shown) > 4, look=look)
     terminal = Console(stderr=True)
     bar = track(shown, "drawing", console=terminal, transient=True, disable=not terminal.is_terminal)
     panels = [(drawn.render(size, camera, quality, pose=pose), label, "") for label, pose in bar]
-    width = columns or (min(4, len(panels)) if poses else len(levels))
     write_picture(output, np.asarray(contact_sheet(panels, width)))
 
 

@@ -19,9 +19,16 @@ _FIRST_RING, _LAST_RING = INNER_RINGS - 1, INNER_RINGS + 5
 _FALL = (0.3, 0.65, 1, 1, 1, 1, 1, 1, 1, 0.8, 0.55, 0.32, 0.14, 0.04)  # of the way the lips are pushed, by rings
 SPREAD, STEEP = np.float32(1.07), np.float32(4.0)
 """How the push at a place between two columns is shared: enough for their mean, and continuous."""
+ROUNDS = 3
+"""How often pressed lips are drawn together and parted: each round leaves less of the gap."""
+PARTINGS = 3
+"""How often lips are parted after the teeth have pushed them: each time takes what the last one left."""
+FARTHEST = np.float32(0.001)
+"""m, the gap that press still closes; one twice as wide it leaves."""
 _ARCH_KEPT = 0.3  # of its distance at rest that a vertex keeps from the teeth
 _SOFTEST = 0.0012  # m, over which the teeth begin to push
-_ROUNDING = 2e-6  # m
+_ROUNDING = 2e-7  # m
+_CLEAR = 2e-5  # m, that lips keep between them where they did at rest
 _NEAREST = 0.0004  # m, vertices that lie nearer to the teeth at rest, or behind them, are not pushed
 
 
@@ -41,6 +48,7 @@ class ContactTables(NamedTuple):
         softness: ``(2, K)`` m, over which the push sets in.
         arch: ``(2, 4)``, the numbers of both :class:`agentface.deform.dental_arch.Arch`.
         hinge, widest, jaw: the turn of the lower arch.
+        press, shut_from: where press stands in a pose, and the level from which it shuts the lips.
     """
 
     grid: Indices
@@ -59,6 +67,8 @@ class ContactTables(NamedTuple):
     hinge: Floats
     widest: float
     jaw: int
+    press: int
+    shut_from: float
 
 
 def prepare(model: HeadModel) -> ContactTables:
@@ -66,7 +76,7 @@ def prepare(model: HeadModel) -> ContactTables:
     grid, points = lip_grid(model), model.vertices.astype(np.float64)
     upper, lower = _columns(grid, points)
     at_rest = [
-        _overlaps(grid.vertices, *lips, points)[0].max(0) for lips in ((upper, lower, 1.0), (lower, upper, -1.0))
+        _overlaps(grid.vertices, *lips, points)[0].max((0, 1)) for lips in ((upper, lower, 1.0), (lower, upper, -1.0))
     ]
     arches = [fit_arch(model, name) for name in ("teeth_upper", "teeth_lower")]
     vertex = grid.vertices.ravel()
@@ -80,8 +90,8 @@ def prepare(model: HeadModel) -> ContactTables:
         seam=SEAM_RING,
         upper=upper,
         lower=lower,
-        overlap_upper=(np.maximum(at_rest[0], 0.0) + _ROUNDING).astype(np.float32),
-        overlap_lower=(np.maximum(at_rest[1], 0.0) + _ROUNDING).astype(np.float32),
+        overlap_upper=(np.maximum(at_rest[0], -_CLEAR) + _ROUNDING).astype(np.float32),
+        overlap_lower=(np.maximum(at_rest[1], -_CLEAR) + _ROUNDING).astype(np.float32),
         fall=np.array(_FALL, np.float32),
         vertex=np.ascontiguousarray(vertex),
         kept=np.where(before, _ARCH_KEPT * distance, -1.0).astype(np.float32),
@@ -90,6 +100,8 @@ def prepare(model: HeadModel) -> ContactTables:
         hinge=np.array(model.jaw.pivot[1:], np.float32),
         widest=math.radians(model.jaw.widest_deg),
         jaw=indices_of("jaw_open")[0],
+        press=indices_of("orbicularis_oris_press")[0],
+        shut_from=model.lips.orbicularis_oris.roll_from,
     )
 
 
@@ -98,7 +110,9 @@ def apply(tables: ContactTables, values: Floats, points: Floats) -> None:
 
     Teeth push along x and z in their own frame: the lower arch's turns with the jaw.
     """
-    _part_lips(tables, points)
+    for _ in range(ROUNDS if values[tables.press] > 0.0 else 1):
+        _close_lips(tables, values[tables.press], points)
+        _part_lips(tables, points)
     points[tables.vertex, ::2] += _push_out(tables, 0, points[tables.vertex])
     angle = np.float32(tables.widest * values[tables.jaw])
     cosine, sine = np.cos(angle), np.sin(angle)
@@ -108,13 +122,32 @@ def apply(tables: ContactTables, values: Floats, points: Floats) -> None:
     places[:, 2] = tables.hinge[1] - sine * up + cosine * forward
     across, ahead = _push_out(tables, 1, places).T
     points[tables.vertex] += np.stack([across, -sine * ahead, cosine * ahead], axis=1)
+    for _ in range(PARTINGS):
+        _part_lips(tables, points)
+
+
+def _close_lips(tables: ContactTables, press: float, points: Floats) -> None:
+    """Press draws lips together that are a little apart: columns go half of the way, evened out."""
+    share = min(np.float32(1.0), np.float32(press) / tables.shut_from)
+    if share <= 0.0:
+        return
+    move = np.zeros(tables.grid.shape[1], np.float32)
+    for own, other, sign in ((tables.upper, tables.lower, 1.0), (tables.lower, tables.upper, -1.0)):
+        gap = np.maximum(-_overlaps(tables.grid, own, other, sign, points)[0].max((0, 1)), np.float32(0.0))
+        near = np.clip(np.float32(2.0) - gap / FARTHEST, np.float32(0.0), np.float32(1.0))
+        near *= gap
+        near[[0, -1]] = 0.0
+        even = np.float32(0.5) * near[1:-1] + np.float32(0.25) * (near[:-2] + near[2:])
+        move[own[1:-1]] = np.float32(-0.5 * sign) * share * even
+    points[tables.grid, 1] += tables.fall[:, None] * move
 
 
 def _part_lips(tables: ContactTables, points: Floats) -> None:
     """Every vertex where the lips touch is held against the height of the other lip at its x: both give way by half.
 
     The two columns of the other lip between which it lies give way by shares that vanish where they cease to be its
-    neighbours, so that lips that slide along each other are pushed without a jump; the largest push counts.
+    neighbours, so that lips that slide along each other are pushed without a jump; the largest push counts. Where the
+    lips join, in the corners, both go together.
     """
     up, down = np.zeros((2, tables.grid.shape[1]), np.float32)
     lips = (
@@ -124,31 +157,36 @@ def _part_lips(tables: ContactTables, points: Floats) -> None:
     for own, other, at_rest, sign, own_push, other_push in lips:
         overlap, second, part = _overlaps(tables.grid, own, other, sign, points)
         push = np.float32(0.5) * np.maximum(overlap - at_rest, np.float32(0.0))
-        push[:, [0, -1]] = 0.0
+        push[..., [0, -1]] = 0.0
         np.maximum.at(own_push, np.broadcast_to(own, push.shape), push)
         for neighbour, share in ((second - 1, 1 - part), (second, part)):
             np.maximum.at(other_push, other[neighbour], push * SPREAD * np.minimum(np.float32(1.0), STEEP * share))
-    if up.any() or down.any():
-        points[tables.grid, 1] += tables.fall[:, None] * (up - down)
+    move = up - down
+    for end in (0, -1):
+        corner = [tables.upper[end], tables.lower[end]]
+        move[corner] = np.float32(0.5) * (move[corner[0]] + move[corner[1]])
+    if move.any():
+        points[tables.grid, 1] += tables.fall[:, None] * move
 
 
 def _overlaps(
     grid: Indices, own: Indices, other: Indices, sign: float, points: _Points
 ) -> tuple[_Points, npt.NDArray[np.int64], _Points]:
-    """For each vertex of ``own`` columns how far it is beyond the other lip at its x, ``(rings, columns)`` m.
+    """How far each vertex of ``own`` columns is beyond each ring of the other lip at its x, ``(rings, others, K)`` m.
 
     Also which of the ``other`` columns is the second of the two that it lies between, and how far towards it, 0..1.
-    ``sign`` is 1 for the upper lip's columns, -1 for the lower lip's.
+    Beyond a ring's end the overlap counts for less by as much. ``sign`` is 1 for the upper lip, else -1.
     """
     rings = grid[_FIRST_RING : _LAST_RING + 1]
-    at, others = points[rings[:, own], 0], points[grid[SEAM_RING, other], 0]
-    second = np.clip((others[1:-1] >= at[..., None]).sum(-1) + 1, 1, len(other) - 1)
-    first, last = others[second - 1], others[second]
+    at, height = np.moveaxis(points[rings[:, None, own], :2], -1, 0)
+    across, up = np.moveaxis(points[rings[:, other], :2], -1, 0)
+    second = np.clip((across[None, :, None, 1:-1] >= at[..., None]).sum(-1) + 1, 1, len(other) - 1)
+    ring = np.arange(len(rings))[:, None]
+    first, last = across[ring, second - 1], across[ring, second]
     part = np.clip((first - at) / np.maximum(first - last, np.float32(1e-6)), np.float32(0.0), np.float32(1.0))
-    height = points[rings[:, other], 1]
-    outermost = height.max(0) if sign > 0 else height.min(0)
-    there = outermost[second - 1] + part * (outermost[second] - outermost[second - 1])
-    return np.float32(sign) * (there - points[rings[:, own], 1]), second, part
+    there = up[ring, second - 1] + part * (up[ring, second] - up[ring, second - 1])
+    beyond = np.maximum(np.maximum(at - across[:, :1], across[:, -1:] - at), np.float32(0.0))
+    return np.float32(sign) * (there - height) - beyond, second, part
 
 
 def _push_out(tables: ContactTables, arch: int, places: Floats) -> Floats:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, fields
 from typing import Any
@@ -16,10 +16,11 @@ from agentface.conventions import Floats
 from agentface.deform import frame
 from agentface.deform.combine import STEP
 from agentface.deform.geometry import FaceGeometry
+from agentface.deform.ranges import check_poses
 from agentface.errors import InvalidValueError
-from agentface.parameters import COUNT, NAMES, VECTOR_MUSCLES
+from agentface.parameters import COUNT, VECTOR_MUSCLES, FacePose
 
-_MUSCLES = slice(NAMES.index(VECTOR_MUSCLES[0]), NAMES.index(VECTOR_MUSCLES[-1]) + 1)
+_EXPECTED = f"an array of numbers of shape (B, {COUNT}) or a sequence of poses"
 _CHUNK = 8  # faces that a thread takes at a time, at most
 
 
@@ -63,6 +64,7 @@ class Crowd:
     """Deforms many faces of one model by the muscles' parallel combination; compiled.
 
     Every face is, bit for bit, what :class:`agentface.deform.pipeline.GeometricDeformer` makes of its pose.
+    It takes one call at a time: two threads that share a crowd overwrite each other's faces, so give each its own.
 
     Args:
         model: the face they all have.
@@ -86,15 +88,21 @@ class Crowd:
         self._scratch = [self._new_scratch() for _ in range(threads)]
         self._pool = ThreadPoolExecutor(threads, "agentface-crowd") if threads > 1 else None
         self._geometry = self._new_geometry(0)
+        self._closed = False
 
-    def deform(self, poses: npt.ArrayLike) -> CrowdGeometry:
-        """The faces in ``poses (B, COUNT)``, rows like ``FacePose.values``.
+    def deform(self, poses: npt.ArrayLike | Sequence[FacePose]) -> CrowdGeometry:
+        """The faces in ``poses``: a sequence of them, or ``(B, COUNT)``, rows like ``FacePose.values``.
 
         The result's arrays are overwritten by the next call; they grow with the largest crowd so far.
 
         Raises:
-            InvalidValueError: for another shape, a value that is not finite, or a contraction outside 0..1.
+            InvalidValueError: for another shape, for what are no numbers, for a parameter outside its range, and after
+                :meth:`close`.
         """
+        if self._closed:
+            raise InvalidValueError(
+                "Crowd.deform", "a crowd that is not closed", "one after close()", "make a new Crowd"
+            )
         values = _checked(poses)
         if len(values) > len(self._geometry):
             self._geometry = self._new_geometry(len(values))
@@ -110,7 +118,8 @@ class Crowd:
         return geometry
 
     def close(self) -> None:
-        """Ends the threads; a crowd that is not used any more does so by itself."""
+        """Ends the threads and the crowd's work; a crowd that is not used any more does so by itself."""
+        self._closed = True
         if self._pool is not None:
             self._pool.shutdown()
 
@@ -135,19 +144,24 @@ class Crowd:
         return CrowdGeometry(**{name: np.empty((count, *shape), np.float32) for name, shape in shapes.items()})
 
 
-def _checked(poses: npt.ArrayLike) -> Floats:
-    values = np.ascontiguousarray(poses, np.float32)
-    if values.ndim != 2 or values.shape[1] != COUNT:
-        raise InvalidValueError("poses", f"an array of shape (B, {COUNT})", values.shape)
-    contractions = values[:, _MUSCLES]
-    if not np.isfinite(values).all() or not ((contractions >= 0.0) & (contractions <= 1.0)).all():
-        raise _refusal(values)
+def _checked(poses: npt.ArrayLike | Sequence[FacePose]) -> Floats:
+    given = _array(poses)
+    if given.ndim != 2 or given.shape[1] != COUNT:
+        raise InvalidValueError("poses", _EXPECTED, given.shape)
+    with np.errstate(over="ignore"):  # what is too large for single precision is refused as infinite
+        values = np.ascontiguousarray(given, np.float32)
+    check_poses(values)
     return values
 
 
-def _refusal(values: Floats) -> InvalidValueError:
-    bad = ~np.isfinite(values)
-    bad[:, _MUSCLES] |= (values[:, _MUSCLES] < 0.0) | (values[:, _MUSCLES] > 1.0)
-    face, column = (int(index) for index in np.argwhere(bad)[0])
-    expected = "a number in 0..1" if NAMES[column] in VECTOR_MUSCLES else "a finite number"
-    return InvalidValueError(f"pose {face}: {NAMES[column]}", expected, float(values[face, column]))
+def _array(poses: npt.ArrayLike | Sequence[FacePose]) -> npt.NDArray[Any]:
+    rows: Any = poses
+    if isinstance(poses, (list, tuple)):
+        rows = [pose.values if isinstance(pose, FacePose) else pose for pose in poses] or np.zeros((0, COUNT))
+    try:
+        array = np.asarray(rows)
+    except (TypeError, ValueError):  # rows of different lengths
+        raise InvalidValueError("poses", _EXPECTED, poses) from None
+    if array.dtype.kind not in "fiu":
+        raise InvalidValueError("poses", _EXPECTED, f"{type(poses).__name__} of {array.dtype}")
+    return array

@@ -70,9 +70,13 @@ def toward(model: HeadModel, point: Sequence[float]) -> tuple[float, float, floa
 
     Raises InvalidValueError for a point that is not finite or not in front of the eyes.
     """
-    if len(point) != len(_AXES):
+    try:
+        coordinates = tuple(point)
+    except TypeError:
+        coordinates = ()
+    if len(coordinates) != len(_AXES):
         raise InvalidValueError("point", "x, y and z in metres", point)
-    x, y, z = (check_finite(f"point {axis}", value) for axis, value in zip(_AXES, point, strict=True))
+    x, y, z = (check_finite(f"point {axis}", value) for axis, value in zip(_AXES, coordinates, strict=True))
     left = model.eye_centre(SIDES[0]).astype(np.float64)
     up, forward = y - left[1], z - left[2]
     if forward < _NEAREST:

@@ -10,7 +10,7 @@ import numpy as np
 from agentface.anatomy.model import HeadModel
 from agentface.anatomy.muscle_set import MuscleSet
 from agentface.conventions import Floats, Indices
-from agentface.deform import between, contact, eyelids, eyes, head, jaw, limits, lips, shading, wrinkles
+from agentface.deform import between, contact, creases, eyelids, eyes, head, jaw, limits, lips, shading, wrinkles
 from agentface.deform.between import BetweenTables
 from agentface.deform.contact import ContactTables
 from agentface.deform.eyelids import EyelidsTables
@@ -20,6 +20,7 @@ from agentface.deform.jaw import JawTables
 from agentface.deform.limits import LimitTables
 from agentface.deform.lips import LipTables
 from agentface.deform.shading import ShadingTables
+from agentface.deform.squash import SquashTables
 from agentface.deform.wrinkles import WrinkleTables
 
 
@@ -29,7 +30,8 @@ class PartTables(NamedTuple):
     Attributes:
         rest: ``(P, 3)`` float32 m, the skin's vertices, then the control points.
         triangles: ``(T, 3)`` int32, of the skin.
-        limits, lips, eyelids, jaw, contact, between, wrinkles, shading, eyes, head: the parts of the same names.
+        limits, lips, eyelids, jaw, contact, creases, between, wrinkles, shading, eyes, head: the parts of
+            the same names.
     """
 
     rest: Floats
@@ -39,6 +41,7 @@ class PartTables(NamedTuple):
     eyelids: EyelidsTables
     jaw: JawTables
     contact: ContactTables
+    creases: SquashTables
     between: BetweenTables
     wrinkles: WrinkleTables
     shading: ShadingTables
@@ -56,15 +59,17 @@ def prepare(model: HeadModel) -> tuple[PartTables, MuscleSet]:
     rest = np.concatenate([model.vertices, of_lips.control_rest])
     reach = (model.muscles.reach[:, follow[0]] * follow[1]).sum(axis=2)
     muscles = replace(model.muscles, reach=np.hstack([model.muscles.reach, np.clip(reach, 0.0, 1.0)]))
+    of_eyelids = eyelids.prepare(model)
     of_wrinkles = wrinkles.prepare(model)
     tables = PartTables(
         rest=rest,
         triangles=np.ascontiguousarray(model.triangles, np.int32),
         limits=limits.prepare(model, follow, rest),
         lips=of_lips,
-        eyelids=eyelids.prepare(model),
-        jaw=jaw.prepare(model, follow),
+        eyelids=of_eyelids,
+        jaw=jaw.prepare(model, follow, (of_lips.patch, of_lips.controls, of_lips.weight, of_lips.control_rest)),
         contact=contact.prepare(model),
+        creases=creases.prepare(model, of_eyelids, of_lips),
         between=between.prepare(model),
         wrinkles=of_wrinkles,
         shading=shading.prepare(model, of_wrinkles),

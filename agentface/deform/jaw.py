@@ -12,16 +12,23 @@ and from there to 0 in the middle of the upper lip. Lower teeth and tongue make 
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
+from typing import NamedTuple, TypeAlias
 
 import numpy as np
 
 from agentface.anatomy.model import HeadModel
 from agentface.conventions import Doubles, Floats, Indices
+from agentface.deform.lip_surface import mirrored_controls
 from agentface.parameters import indices_of
 
-Follow = tuple[Indices, Floats]
+Follow: TypeAlias = tuple[Indices, Floats]
 """For points that are not vertices, ``(C, k)`` vertices whose weighted mean, ``(C, k)``, each one's share is."""
+Surface: TypeAlias = tuple[Indices, Indices, Floats, Floats]
+"""Vertices ``(P,)`` of a surface that those points span, the points that act on each ``(P, k)``, how much ``(P, k)``,
+and where they rest ``(C, 3)`` m."""
+_CORNER = 1000.0  # vertices that a corner of the lips counts for: there the paper says the share
+_PRIOR = 1e-3
+_STEPS = 1500
 
 
 class JawTables(NamedTuple):
@@ -42,11 +49,17 @@ class JawTables(NamedTuple):
     parameter: int
 
 
-def prepare(model: HeadModel, follow: Follow | None = None) -> JawTables:
-    """The tables of a face's skin and, after its vertices, of the points that ``follow`` it."""
+def prepare(model: HeadModel, follow: Follow | None = None, surface: Surface | None = None) -> JawTables:
+    """The tables of a face's skin and, after its vertices, of the points that ``follow`` it.
+
+    Where these span a ``surface`` of vertices, their shares are such that the surface's are its vertices'.
+    """
     share = model.jaw_weights
     if follow is not None:
-        share = np.concatenate([share, (share[follow[0]] * follow[1]).sum(axis=1)]).astype(np.float32)
+        mean = (share[follow[0]] * follow[1]).sum(axis=1)
+        if surface is not None:
+            mean = _spanned(model, mean.astype(np.float64), surface)
+        share = np.concatenate([share, mean]).astype(np.float32)
     where = np.flatnonzero(share).astype(np.int32)
     return JawTables(
         where=where,
@@ -55,6 +68,32 @@ def prepare(model: HeadModel, follow: Follow | None = None) -> JawTables:
         widest=math.radians(model.jaw.widest_deg),
         parameter=indices_of("jaw_open")[0],
     )
+
+
+def _spanned(model: HeadModel, prior: Doubles, surface: Surface) -> Doubles:
+    """Shares ``(C,)`` of 0..1 that give the surface those of its vertices, by weighted least squares, symmetric.
+
+    Nesterov's accelerated gradient, projected; ``prior`` is the start and what is kept where no vertex tells.
+    """
+    vertex, index, weight, control = surface
+    hinge = np.array(model.jaw.pivot[1:])
+    arm, arms = model.vertices[vertex, 1:] - hinge, control[:, 1:] - hinge
+    # a point turns its vertex by as much as its arm about the hinge is long along the vertex's own
+    lever = (arms[index] * arm[:, None]).sum(axis=2) / (arm**2).sum(axis=1)[:, None]
+    rows = np.zeros((len(vertex), len(prior)))
+    np.put_along_axis(rows, index.astype(np.int64), weight.astype(np.float64) * lever, axis=1)
+    counts = np.ones(len(model.vertices))
+    counts[[end for ring in model.lips.rings for end in (ring.upper[0], ring.upper[-1])]] = _CORNER
+    counted = counts[vertex]
+    normal = rows.T @ (counted[:, None] * rows) + _PRIOR * np.eye(len(prior))
+    right = rows.T @ (counted * model.jaw_weights[vertex]) + _PRIOR * prior
+    step = 1.0 / np.linalg.norm(normal, 2)
+    share, ahead, pace = prior, prior, 1.0
+    for _ in range(_STEPS):
+        last, share = share, np.clip(ahead - step * (normal @ ahead - right), 0.0, 1.0)
+        last_pace, pace = pace, 0.5 + math.sqrt(0.25 + pace * pace)
+        ahead = share + (last_pace - 1.0) / pace * (share - last)
+    return np.asarray(0.5 * (share + share[mirrored_controls()]))
 
 
 def apply(tables: JawTables, values: Floats, points: Floats) -> None:

@@ -10,8 +10,9 @@ import numpy as np
 import numpy.typing as npt
 
 from agentface.anatomy.lids import LidMotion
-from agentface.anatomy.model import HeadModel, RingHalves
+from agentface.anatomy.model import HeadModel
 from agentface.anatomy.resample import ResampledModel
+from agentface.anatomy.rings import RingHalves
 from agentface.conventions import SIDES, Doubles, Indices
 
 _Mask: TypeAlias = npt.NDArray[np.bool_]

@@ -13,9 +13,10 @@ from agentface.deform import frame
 from agentface.deform.combine import Combiner, Method
 from agentface.deform.geometry import FaceGeometry
 from agentface.deform.normals import NormalField
+from agentface.deform.ranges import check_pose
 from agentface.parameters import VECTOR_MUSCLES, FacePose, indices_of
 
-_PARTS = ("limits", "lips", "eyelids", "jaw", "contact", "between", "wrinkles", "shading", "eyes", "head")
+_PARTS = ("limits", "lips", "eyelids", "jaw", "contact", "squash", "between", "wrinkles", "shading", "eyes", "head")
 
 
 class Deformer(Protocol):
@@ -30,8 +31,8 @@ class GeometricDeformer:
 
     The vector muscles move the skin and the control points of the lips, combined as ``combine`` says, as far as each
     region allows; then orbicularis oris, the lids, and the jaw, which carries all that along; then the lips' surface
-    takes its vertices, lips and teeth are kept apart, and the wrinkles rise. ``compiled=False`` takes the numpy forms,
-    the same to 1e-6 m: ready at once, slow a frame.
+    takes its vertices, lips and teeth are kept apart, no skin turns over, and the wrinkles rise. ``compiled=False``
+    takes the numpy forms, the same to 1e-6 m: ready at once, slow a frame.
     """
 
     def __init__(self, model: HeadModel, combine: Method = "parallel", *, compiled: bool = True) -> None:
@@ -49,9 +50,10 @@ class GeometricDeformer:
     def deform(self, pose: FacePose) -> FaceGeometry:
         """The face in ``pose``; the result's arrays are overwritten by the next call.
 
-        Raises InvalidValueError for a contraction outside 0..1.
+        Raises InvalidValueError for a parameter outside its range.
         """
         values = pose.values
+        check_pose(values)
         for stage in self._stages.values():
             stage(values)
         return self.geometry
@@ -78,6 +80,7 @@ class GeometricDeformer:
             "jaw": lambda values: part["jaw"].apply(tables.jaw, values, points),
             "lips": lambda _: part["lips"].surface(tables.lips, points),
             "contact": lambda values: part["contact"].apply(tables.contact, values, points),
+            "creases": lambda _: part["squash"].apply(tables.creases, points),
             "between": lambda _: part["between"].apply(tables.between, points),
             "smooth_normals": lambda _: self._normals.compute(shown.vertices, shown.smooth_normals),
             "wrinkles": raise_wrinkles,

@@ -8,8 +8,8 @@ q = h·h₀ / |h₀|² what is left of it. Where q falls below q₀ it is raised
     q' = q₀ − (q₀ − q₁) s / (1 + s),     s = (q₀ − q) / (q₀ − q₁),
 
 smooth in value and slope and above q₁, by moving p, a and b along h₀ by least squares, as 1, w − 1 and −w; what no
-muscle moves stays. Heights follow each other in groups without a common vertex; a height and its mirror image move at
-the same time, so that a mirrored face stays mirrored.
+muscle moves stays. Heights follow each other in groups without a common vertex, outward from where the skin is held; a
+height and its mirror image move at the same time, so that a mirrored face stays mirrored.
 """
 
 from __future__ import annotations
@@ -24,9 +24,11 @@ from agentface.conventions import Doubles, Floats, Indices
 from agentface.deform.vector_muscle import pull
 
 Numbers = npt.NDArray[np.int64]
+Masks = npt.NDArray[np.bool_]
 _PASSES = 3
 _LEAST, _FLAT = 0.35, 0.02
 _MOVED = 1e-5
+_STIFF = 0.1  # of a whole give: a height of which no vertex has more stays as it is
 
 
 class SquashTables(NamedTuple):
@@ -56,21 +58,48 @@ class SquashTables(NamedTuple):
 
 
 def prepare(model: HeadModel) -> SquashTables:
-    """The heights that all muscles together could bring below ``least``, of triangles without a flat angle there."""
+    """The heights that all vector muscles together could bring below ``least``."""
+    names = model.muscles.names
+    points = model.vertices.astype(np.float64)
+    moves = [pull(model.muscles, i, points, 1.0) for i, name in enumerate(names) if name.endswith("_l")]
+    moved = np.any([np.linalg.norm(move, axis=1) > _MOVED for move in moves], axis=0)
+    free = (moved | moved[model.mirror]).astype(np.float64)
+    every = np.ones(len(points), np.bool_)
+    return tables_of(model, moves, free, every, outward=np.zeros(len(points)), lost=1.0 - _LEAST, passes=_PASSES)
+
+
+def tables_of(
+    model: HeadModel, moves: list[Doubles], free: Doubles, near: Masks, *, outward: Doubles, lost: float, passes: int
+) -> SquashTables:
+    """The heights of which ``moves`` and their mirror images together could take ``lost`` or more.
+
+    Triangles with a flat angle at the corner are left out.
+
+    Args:
+        model: the face.
+        moves: displacements ``(V, 3)`` m from rest, each of which can come with all the others.
+        free: ``(V,)`` 0..1, mirror-symmetric, how readily each vertex gives way.
+        near: ``(V,)`` mirror-symmetric, the vertices of which a height needs one.
+        outward: ``(V,)`` mirror-symmetric: heights where its sum is least have their turn first.
+        lost: part of a height.
+        passes: how often all groups have their turn.
+    """
     points = model.vertices.astype(np.float64)
     corners = np.concatenate([np.roll(model.triangles, -i, axis=1) for i in range(3)])
+    corners = corners[near[corners].any(axis=1) & (free[corners] > _STIFF).any(axis=1)]
     foot, height = _heights(points, corners)
     # a foot far outside its edge is another corner's business
     inside = (foot > -0.3) & (foot < 1.3)
     corners, foot, height = corners[inside], foot[inside], height[inside]
     image = _images(model, corners)
-    loss, movable = _largest_loss(model, points, corners, foot, height)
-    chosen = np.flatnonzero((loss + loss[image] > 1.0 - _LEAST) & (np.arange(len(corners)) <= image))
+    loss = _largest_loss(moves, corners, foot, height)
+    chosen = np.flatnonzero((loss + loss[image] > lost) & (np.arange(len(corners)) <= image))
+    chosen = chosen[np.argsort(outward[corners[chosen]].sum(axis=1), kind="stable")]
     groups, order = _groups(corners[chosen], corners[image[chosen]])
     chosen = chosen[order]
     pair = np.stack([chosen, image[chosen]], axis=1)
     parts = np.stack([np.ones(pair.shape), foot[pair] - 1.0, -foot[pair]], axis=2)
-    gives = parts * movable[corners[pair]]
+    gives = parts * free[corners[pair]]
     gives /= (gives * parts).sum(axis=2, keepdims=True)
     gives[pair[:, 0] == pair[:, 1]] *= 0.5
     square = (height[pair] ** 2).sum(axis=2, keepdims=True)
@@ -83,7 +112,7 @@ def prepare(model: HeadModel) -> SquashTables:
         groups=groups,
         least=_LEAST,
         flat=_FLAT,
-        passes=_PASSES,
+        passes=passes,
     )
 
 
@@ -124,35 +153,24 @@ def _images(model: HeadModel, corners: Indices) -> Numbers:
     return order[np.searchsorted(own[order], keys(model.mirror.astype(np.int64)[corners]))]
 
 
-def _largest_loss(
-    model: HeadModel, points: Doubles, corners: Indices, foot: Doubles, height: Doubles
-) -> tuple[Doubles, npt.NDArray[np.bool_]]:
-    """What the left muscles, each for itself at full contraction, take from each height ``(N,)``, summed.
-
-    Beside it, whether a muscle of either side moves each vertex ``(V,)``.
-    """
-    loss, movable = np.zeros(len(corners)), np.zeros(len(points), np.bool_)
+def _largest_loss(moves: list[Doubles], corners: Indices, foot: Doubles, height: Doubles) -> Doubles:
+    """What ``moves``, each for itself, take from each height ``(N,)``, as parts of it, summed."""
+    loss = np.zeros(len(corners))
     measure = height / (height**2).sum(axis=1, keepdims=True)
-    for index, name in enumerate(model.muscles.names):
-        if not name.endswith("_l"):
-            continue
-        moved = pull(model.muscles, index, points, 1.0)
-        movable |= np.linalg.norm(moved, axis=1) > _MOVED
+    for moved in moves:
         touched = np.flatnonzero((moved[corners] != 0.0).any(axis=(1, 2)))
         p, a, b = np.moveaxis(moved[corners[touched]], 1, 0)
         change = p - a - foot[touched, None] * (b - a)
         loss[touched] += np.maximum(-(change * measure[touched]).sum(axis=1), 0.0)
-    return loss, movable | movable[model.mirror]
+    return loss
 
 
 def _groups(corners: Indices, images: Indices) -> tuple[Indices, Numbers]:
-    """Where each group begins, and the order of the heights by group; each joins the first that has room for it."""
-    taken: list[set[int]] = []
+    """Where each group begins, and the order of the heights by group; each comes after those that it shares with."""
+    last: dict[int, int] = {}
     group = np.zeros(len(corners), np.int64)
     for i, vertices in enumerate(np.concatenate([corners, images], axis=1).tolist()):
-        group[i] = next((k for k, used in enumerate(taken) if used.isdisjoint(vertices)), len(taken))
-        if group[i] == len(taken):
-            taken.append(set())
-        taken[group[i]].update(vertices)
+        group[i] = 1 + max(last.get(vertex, -1) for vertex in vertices)
+        last.update(dict.fromkeys(vertices, int(group[i])))
     order = np.argsort(group, kind="stable")
-    return np.searchsorted(group[order], np.arange(len(taken) + 1)).astype(np.int32), order
+    return np.searchsorted(group[order], np.arange(group.max(initial=-1) + 2)).astype(np.int32), order

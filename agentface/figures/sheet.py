@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from agentface.conventions import Bytes
+from agentface.errors import InvalidValueError
 
 if TYPE_CHECKING:
     from PIL.Image import Image
@@ -16,6 +17,15 @@ if TYPE_CHECKING:
 GAP, CAPTION = 12, 52
 INK = (40, 40, 44)
 _COLOURS = 250
+_LARGEST = 2**26  # pixels of a whole sheet
+
+
+def check_sheet_size(size: tuple[int, int], count: int, columns: int) -> None:
+    """Raise InvalidValueError when ``count`` panels of ``size`` pixels would make a sheet of more than 67 megapixels."""
+    pixels = columns * (size[0] + GAP) * -(-count // columns) * (size[1] + CAPTION + GAP)
+    if pixels > _LARGEST:
+        text = f"{count} pictures of {size[0]}x{size[1]}, {pixels / 1e6:.0f} megapixels"
+        raise InvalidValueError("sheet", f"{_LARGEST / 1e6:.0f} megapixels together", text, "fewer or smaller pictures")
 
 
 def sheet(panels: Sequence[tuple[Image | Bytes, str, str]], columns: int) -> Image:

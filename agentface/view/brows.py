@@ -102,7 +102,7 @@ def _lash_row(
     ring = model.eyelids.rings[side][_LASH_RING]
     half = np.array(ring.upper if upper else ring.lower, np.int32)
     half = half if side == "l" else half[::-1]  # from the temple inward on both sides
-    outward = np.linspace(0.985, 0.10, count) + rng.normal(0, 0.006, count)  # 1 at the temple
+    outward = np.linspace(0.95, 0.10, count) + rng.normal(0, 0.006, count)  # 1 at the temple
     roots = roots_along(half, model.vertices, np.clip(1 - outward, 0.0, 1.0))
     lengths = (length * (0.55 + 0.55 * outward) * (0.8 + 0.35 * rng.random(count)))[:, None]
     fan = ((outward - 0.45) * 1.1 + rng.normal(0, 0.10, count))[:, None] * (1.0 if side == "l" else -1.0)

@@ -41,6 +41,11 @@ def open_context() -> Any:
         raise GraphicsError(_NO_EGL.format(reason=str(error).strip() or type(error).__name__)) from error
 
 
+def make_current(context: Any) -> None:
+    """Let OpenGL draw in ``context`` from now on, also when another face's has become the current one since."""
+    context.__enter__()  # its __exit__ would leave no context current, not the one before
+
+
 class Witness:
     """One pixel of a known colour. With the context lost, reading a picture gives what lay in memory, and no error."""
 
@@ -58,7 +63,7 @@ class Witness:
         if reason:
             raise GraphicsError(
                 f"the picture: expected OpenGL to have drawn it, got: {reason};"
-                " ask for a smaller size if it is large, else start the program again"
+                " ask for a smaller picture, draw in the thread that drew first, or start the program again"
             )
 
 

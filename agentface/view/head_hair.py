@@ -17,6 +17,8 @@ from agentface.view.strands import StrandArray
 _SEED = 20
 _STREAKS = {"fast": 1.6, "portrait": 1.7}
 _NARROWEST = {"fast": 0.9, "portrait": 0.5}
+_OUTERMOST = {"fast": 0.5, "portrait": 0.75}
+"""The part of long strands that is drawn: what lies deeper is hidden by them."""
 _GLOSS = {"cropped": 0.25, "swept": 0.8, "bob": 0.9, "bun": 0.9}
 
 
@@ -37,11 +39,13 @@ class HeadHair:
         strands = self._strands_for(quality)
         self._program["narrowest"].value = _NARROWEST[quality]
         self._program["streaks"].value = _STREAKS[quality]
-        strands.draw_solid()
+        strands.draw_solid(1.0 if self._look.style == "cropped" else _OUTERMOST[quality])
 
     def draw_soft(self, quality: str, onto: Any) -> None:
         """Draw what blends, after everything solid, into the framebuffer ``onto``."""
+        self._context.enable(self._context.CULL_FACE)
         self._cap.draw()
+        self._context.disable(self._context.CULL_FACE)
         onto.depth_mask = False  # a nearly clear hair hides nothing
         self._strands_for(quality).draw_fine()
         onto.depth_mask = True

@@ -19,7 +19,8 @@ from agentface.deform.lip_surface import COLUMNS, ROWS
 from agentface.view.refine import Refined
 
 _CONTROLS = COLUMNS * ROWS
-_STIFF = 1e-3  # keeps control points that few vertices hold from wandering
+_FADE = 2.5  # rings of the patch over which its edge goes over into the skin beyond
+_STIFF = 0.05  # keeps control points that few vertices hold from wandering
 
 
 class FineLips:
@@ -47,7 +48,7 @@ class FineLips:
         self._rest_fine = _mixed(tables.rest, fine.patch, fine.share)
         self._ends = self._edge_ends()
         inward = np.minimum(np.arange(fine.rings), np.arange(fine.rings)[::-1]) / (fine.rings / (len(tables.along) - 1))
-        self._own = np.repeat(np.clip(inward, 0, 1), fine.columns).astype(np.float32)[:, None]
+        self._own = np.repeat(np.clip(inward / _FADE, 0, 1), fine.columns).astype(np.float32)[:, None]
 
     @property
     def count(self) -> int:
@@ -90,7 +91,7 @@ class FineLips:
         around = np.concatenate([moved, there, normals[self._patch]], axis=1)
         still, there, smooth = np.split(_mixed(around, fine.patch, fine.share), 3, axis=1)
         surface = _mixed(control, fine.controls, fine.weight) - there
-        places = self._rest_fine + still + fine.free[:, None] * surface
+        places = self._rest_fine + still + self._own * surface
         grid = places.reshape(self._fine.rings, self._fine.columns, 3)
         own = np.cross(np.gradient(grid, axis=0), np.roll(grid, -1, axis=1) - np.roll(grid, 1, axis=1)).reshape(-1, 3)
         own /= np.maximum(np.linalg.norm(own, axis=1, keepdims=True), 1e-12)

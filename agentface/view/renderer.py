@@ -12,7 +12,7 @@ from agentface.deform.geometry import FaceGeometry
 from agentface.view.anchored import AnchoredArray, eye_linings
 from agentface.view.brows import BrowLine, brow_hairs, lash_hairs
 from agentface.view.camera import Camera, named_view
-from agentface.view.context import Witness, open_context, shader_names
+from agentface.view.context import Witness, make_current, open_context, shader_names
 from agentface.view.frame import pack_frame, pixels_a_metre, shadow_projection
 from agentface.view.hair import Hairline, hidden
 from agentface.view.head_hair import HeadHair
@@ -55,43 +55,38 @@ class Renderer:
         self.model = model
         self.look = look if look is not None else load_look(model)
         self.context = context if context is not None else open_context()
-        with self.context:
-            self._witness = Witness(self.context)
-            self._targets: dict[tuple[tuple[int, int], int], Targets] = {}
-            self._frame = self.context.buffer(reserve=_FRAME_BYTES)
-            rng = np.random.default_rng(_SEED)
-            self._noise = self.context.texture3d((SIDE,) * 3, 4, noise_volume(rng).tobytes())
-            self._programs = Programs(self.context)
-            self._screens = {
-                name: self.context.vertex_array(self._programs[name], []) for name in ("background", "copy")
-            }
-            lips = FineLips(model, _LIP_CUTS)
-            self._fields = SkinFields(self.context, len(model.vertices), lips)
-            self._wrinkles = WrinkleAtlas(self.context, model)
-            normals = vertex_normals(model.vertices, model.triangles)
-            self._shadow = KeyShadow(self.context, self._programs.depth, model)
-            self._meshes = SkinMeshes(self.context, model, lips, self._covered(), self._lit_at_rest(normals))
-            self._skins: dict[tuple[str, int], Skin] = {}
-            self._mouth = Mouth(self.context, self._programs["part"], model)
-            self._eyes = [Eyeball(self.context, self._programs["eye"], model, side) for side in SIDES]
-            self._shirt = _shirt(self.context, self._programs["cloth"], model)
-            self._linings = [
-                AnchoredArray(self.context, self._programs["lining"], mesh, model.vertices)
-                for mesh in eye_linings(model)
-            ]
-            hair = self.look.hair
-            self._hairs = [
-                HairArray(self.context, self._programs["ribbon"], brow_hairs(model, normals, hair, rng), 0.35),
-                HairArray(self.context, self._programs["ribbon"], lash_hairs(model, normals, hair, rng), 0.1),
-            ]
-            self._head_hair: HeadHair | None = None
-            if hair.style != "none":
-                self._head_hair = HeadHair(self.context, self._programs["cap"], self._programs["strand"], model, hair)
-            front = float(model.landmarks["upper_lip_middle"][2])
-            self._programs.wear(self.look)
-            self._programs.set(
-                {"mouth_front": front, "atlas_height": self._wrinkles.height, "iris_radius": _IRIS_RADIUS}
-            )
+        make_current(self.context)
+        self._witness = Witness(self.context)
+        self._targets: dict[tuple[tuple[int, int], int], Targets] = {}
+        self._frame = self.context.buffer(reserve=_FRAME_BYTES)
+        rng = np.random.default_rng(_SEED)
+        self._noise = self.context.texture3d((SIDE,) * 3, 4, noise_volume(rng).tobytes())
+        self._programs = Programs(self.context)
+        self._screens = {name: self.context.vertex_array(self._programs[name], []) for name in ("background", "copy")}
+        lips = FineLips(model, _LIP_CUTS)
+        self._fields = SkinFields(self.context, model, lips)
+        self._wrinkles = WrinkleAtlas(self.context, model)
+        normals = vertex_normals(model.vertices, model.triangles)
+        self._shadow = KeyShadow(self.context, self._programs.depth, model)
+        self._meshes = SkinMeshes(self.context, model, lips, self._covered(), self._lit_at_rest(normals))
+        self._skins: dict[tuple[str, int], Skin] = {}
+        self._mouth = Mouth(self.context, self._programs["part"], model)
+        self._eyes = [Eyeball(self.context, self._programs["eye"], model, side) for side in SIDES]
+        self._shirt = _shirt(self.context, self._programs["cloth"], model)
+        self._linings = [
+            AnchoredArray(self.context, self._programs["lining"], mesh, model.vertices) for mesh in eye_linings(model)
+        ]
+        hair = self.look.hair
+        self._hairs = [
+            HairArray(self.context, self._programs["ribbon"], brow_hairs(model, normals, hair, rng), 0.35),
+            HairArray(self.context, self._programs["ribbon"], lash_hairs(model, normals, hair, rng), 0.1),
+        ]
+        self._head_hair: HeadHair | None = None
+        if hair.style != "none":
+            self._head_hair = HeadHair(self.context, self._programs["cap"], self._programs["strand"], model, hair)
+        front = float(model.landmarks["upper_lip_middle"][2])
+        self._programs.wear(self.look)
+        self._programs.set({"mouth_front": front, "atlas_height": self._wrinkles.height, "iris_radius": _IRIS_RADIUS})
 
     def render(
         self,
@@ -114,11 +109,11 @@ class Renderer:
         Raises InvalidValueError for a wrong size, UnknownNameError for an unknown view or quality, GraphicsError when
         the driver has lost the context.
         """
-        with self.context:  # another face's may have become the current one since
-            targets = self._targets_for(size, quality)
-            self.draw(geometry, targets, camera, quality, alpha=alpha)
-            picture = targets.read(alpha=alpha)
-            self._witness.check()
+        make_current(self.context)
+        targets = self._targets_for(size, quality)
+        self.draw(geometry, targets, camera, quality, alpha=alpha)
+        picture = targets.read(alpha=alpha)
+        self._witness.check()
         return picture
 
     @shader_names()

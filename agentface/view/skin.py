@@ -13,6 +13,7 @@ from agentface.deform.geometry import FaceGeometry
 from agentface.errors import InvalidValueError
 from agentface.view.complexion import blurred, complexion
 from agentface.view.lips import FineLips
+from agentface.view.neck import Neck
 from agentface.view.refine import Refined, refine, unrefined, vertex_normals
 from agentface.view.shirt import uncovered
 
@@ -26,9 +27,9 @@ class SkinFields:
     The vertices of ``lips`` come behind those of the skin.
     """
 
-    def __init__(self, context: Any, vertex_count: int, lips: FineLips) -> None:
-        self.count, self._lips = vertex_count, lips
-        rows = -(-(vertex_count + lips.count) // _COLUMNS)
+    def __init__(self, context: Any, model: HeadModel, lips: FineLips) -> None:
+        self.count, self._lips, self._neck = len(model.vertices), lips, Neck(model)
+        rows = -(-(self.count + lips.count) // _COLUMNS)
         self._texels = np.zeros((2, rows * _COLUMNS, 4), np.float32)
         self.texture = context.texture((_COLUMNS, 2 * rows), 4, dtype="f4")
         self.texture.filter = (context.NEAREST, context.NEAREST)
@@ -44,6 +45,7 @@ class SkinFields:
         self._texels[0, : self.count, :3] = geometry.vertices
         self._texels[0, : self.count, 3] = geometry.wrinkles
         self._texels[1, : self.count, :3] = geometry.smooth_normals
+        self._neck.hold(geometry.head, *self._texels[:, : self.count, :3])
         self.texture.write(self._texels)
 
     def update_lips(self, geometry: FaceGeometry) -> None:

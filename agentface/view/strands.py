@@ -59,10 +59,10 @@ class StrandArray:
         self.array = context.vertex_array(program, layout, context.buffer(triangles.tobytes()))
         self.solid = 6 * (points - 1) * (count - strands.fine)
 
-    def draw_solid(self) -> None:
-        """Draw those that hide what is behind them, where the skin is."""
+    def draw_solid(self, outermost: float) -> None:
+        """Draw those that hide what is behind them, where the skin is: the part ``outermost`` 0..1 of them."""
         self.program["solid"].value = 1.0
-        self.array.render(vertices=self.solid)
+        self.array.render(vertices=round(outermost * self.solid / 6) * 6)
 
     def draw_fine(self) -> None:
         """Draw those that blend."""

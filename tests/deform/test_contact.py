@@ -78,6 +78,48 @@ def test_lips_and_teeth_never_pass_through_each_other(face):
         assert mouth.crossings(geometry.vertices, geometry.jaw) == (0, 0, 0), repr(pose)
 
 
+@pytest.mark.parametrize(
+    "muscles",
+    [
+        {"orbicularis_oris_press": 0.8, "zygomaticus_major": 1, "zygomaticus_minor": 1},
+        {"orbicularis_oris_press": 0.8, "zygomaticus_major": 1, "platysma": 1},
+        {
+            "orbicularis_oris_press": 1,
+            "zygomaticus_major_r": 1,
+            "zygomaticus_minor_r": 1,
+            "levator_labii_superioris_alaeque_nasi_r": 1,
+        },
+    ],
+)
+def test_tight_lips_that_smile_do_not_pass_through_each_other(face, muscles):
+    geometry = GeometricDeformer(FACES[face]).deform(FacePose.of(**muscles))
+    assert Mouth(FACES[face]).crossings(geometry.vertices, geometry.jaw) == (0, 0, 0)
+
+
+def test_lips_of_muscles_at_their_ends_do_not_pass_through_each_other(face):
+    mouth, deformer = Mouth(FACES[face]), GeometricDeformer(FACES[face])
+    rng = np.random.default_rng(9)
+    for number in range(60):
+        values = np.where(rng.random(COUNT) < (0.5 if number % 2 else 0.25), HIGH, np.maximum(LOW, 0.0))
+        values[indices_of("jaw_open")[0]] *= number % 3 == 0
+        geometry = deformer.deform(FacePose(values.astype(np.float32)))
+        assert mouth.crossings(geometry.vertices, geometry.jaw) == (0, 0, 0), repr(values)
+
+
+@pytest.mark.parametrize("press", [0.4, 0.7, 1.0])
+def test_pressed_lips_are_shut(face, press):
+    """From corner to corner no more than a tenth of a millimetre stays open between the lowest and the highest ring."""
+    vertices = GeometricDeformer(FACES[face]).deform(FacePose.of(orbicularis_oris_press=press)).vertices
+    rings = FACES[face].lips.rings[:5]
+    corner = FACES[face].landmarks["mouth_corner_l"][0]
+    for x in np.linspace(-0.6, 0.6, 41) * corner:
+        heights = []
+        for halves in ([ring.upper for ring in rings], [ring.lower for ring in rings]):
+            lines = [vertices[half][np.argsort(vertices[half][:, 0])] for half in halves]
+            heights.append([np.interp(x, line[:, 0], line[:, 1]) for line in lines])
+        assert min(heights[0]) - max(heights[1]) < 0.1 * MM
+
+
 def test_the_oracle_sees_lips_that_pass_through(face):
     model = FACES[face]
     mouth, points = Mouth(model), model.vertices.copy()
@@ -142,9 +184,9 @@ def test_the_arch_has_the_teeth_behind_it_and_lies_close(face):
 
 
 @settings(max_examples=30)
-@given(st.floats(0, 1), st.floats(0, 6), st.integers(0, 10**6))
-def test_compiled_and_numpy_agree(opening, size, seed):
-    values = FacePose.of(jaw_open=opening).values
+@given(st.floats(0, 1), st.floats(0, 1), st.floats(0, 6), st.integers(0, 10**6))
+def test_compiled_and_numpy_agree(opening, press, size, seed):
+    values = FacePose.of(jaw_open=opening, orbicularis_oris_press=press).values
     for face, model in FACES.items():
         noise = np.random.default_rng(seed).standard_normal(model.vertices.shape)
         one = (model.vertices + size * MM * noise).astype(np.float32)

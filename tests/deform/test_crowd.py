@@ -1,20 +1,25 @@
 """Many faces at once are the same faces, bit for bit."""
 
+import math
 from dataclasses import fields
 
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from agentface.anatomy.model import load_model
 from agentface.anatomy.resample import thinned
 from agentface.bench.crowd import random_poses
 from agentface.deform.crowd import Crowd
 from agentface.deform.pipeline import GeometricDeformer
+from agentface.deform.ranges import check_pose, check_poses
 from agentface.errors import InvalidValueError
-from agentface.parameters import COUNT, FacePose
+from agentface.parameters import COUNT, NAMES, PARAMETERS, FacePose
 
 MODELS = {face: load_model(face) for face in ("amber", "onyx")}
 CROWD = Crowd(MODELS["amber"])
+DEFORMER = GeometricDeformer(MODELS["amber"])
 
 
 @pytest.fixture(scope="module")
@@ -82,7 +87,16 @@ def test_a_coarser_face_makes_a_crowd_too():
         (np.zeros(COUNT), r"shape \(B, \d+\)"),
         (np.zeros((2, COUNT - 1)), r"shape \(B, \d+\)"),
         (np.full((1, COUNT), np.nan), r"pose 0: .*frontalis"),
-        (np.full((3, COUNT), 1.5), "number in 0..1"),
+        (np.full((3, COUNT), 1.5), r"number in 0\.\.1, got 1\.5"),
+        (np.full((1, COUNT), 1e300), r"pose 0: .*finite number, got inf"),
+        ("pose", "array of numbers"),
+        (["a"] * COUNT, "array of numbers"),
+        ([["a"] * COUNT], "array of numbers"),
+        ([[0.0] * COUNT, [0.0]], "array of numbers"),
+        (np.zeros((1, COUNT), np.complex64), "array of numbers.*complex64"),
+        (np.zeros((1, COUNT), np.bool_), "array of numbers.*bool"),
+        (FacePose(), "array of numbers"),
+        (None, "array of numbers"),
     ],
 )
 def test_bad_poses_are_refused_by_name(poses, message):
@@ -95,6 +109,49 @@ def test_a_value_that_is_not_finite_is_told_with_its_face():
     poses[4, -1] = np.inf
     with pytest.raises(InvalidValueError, match=r"pose 4: .*finite"):
         CROWD.deform(poses)
+
+
+@pytest.mark.parametrize("known", PARAMETERS, ids=NAMES)
+def test_every_parameter_has_its_range_and_the_whole_of_it(known):
+    rows = np.zeros((2, COUNT), np.float32)
+    what = "angle" if known.unit == "rad" else "contraction"
+    for limit, way in ((known.low, -math.inf), (known.high, math.inf)):
+        rows[1, known.index] = limit
+        CROWD.deform(rows)
+        DEFORMER.deform(FacePose.of(**{known.name: limit}))
+        rows[1, known.index] = np.nextafter(np.float32(limit), np.float32(way))
+        with pytest.raises(InvalidValueError, match=rf"^pose 1: {what} of {known.name}: expected a number in .*\.\."):
+            CROWD.deform(rows)
+        with pytest.raises(InvalidValueError, match=rf"^{what} of {known.name}: expected a number in .*\.\."):
+            DEFORMER.deform(FacePose(rows[1]))
+
+
+@settings(max_examples=200)
+@given(st.lists(st.floats(0, 1), min_size=COUNT, max_size=COUNT))
+def test_what_a_pose_takes_the_deformers_take(fractions):
+    limits = zip(PARAMETERS, fractions, strict=True)
+    within = {known.name: min(known.low + (known.high - known.low) * part, known.high) for known, part in limits}
+    pose = FacePose.of(**within)
+    check_pose(pose.values)
+    check_poses(pose.values[None])
+
+
+def test_a_sequence_of_poses_is_a_crowd():
+    poses = [FacePose.of(jaw_open=0.5), FacePose.of(zygomaticus_major=1.0, head_yaw=-0.3)]
+    kept = CROWD.deform(np.stack([pose.values for pose in poses])).vertices.copy()
+    for sequence in (poses, tuple(poses), [poses[0], poses[1].values.tolist()]):
+        np.testing.assert_array_equal(CROWD.deform(sequence).vertices, kept)
+    assert len(CROWD.deform([])) == 0
+
+
+@pytest.mark.parametrize("threads", [1, 2])
+def test_a_closed_crowd_says_so(threads):
+    crowd = Crowd(MODELS["amber"], threads)
+    crowd.deform(random_poses(20))
+    crowd.close()
+    crowd.close()
+    with pytest.raises(InvalidValueError, match="not closed"):
+        crowd.deform(random_poses(20))
 
 
 @pytest.mark.parametrize("threads", [0, -1, 1.5, True, "2"])

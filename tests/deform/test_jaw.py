@@ -162,3 +162,20 @@ def test_compiled_and_plain_are_the_same(opening):
         jaw.transform(TABLES[face], values, one)
         compiled.transform(TABLES[face], values, other)
         np.testing.assert_allclose(other, one, atol=1e-7, rtol=0)
+
+
+def test_the_drawn_lips_turn_by_the_papers_shares(face):
+    """What is drawn, after the lips' surface, and not only the shares that the mesh has."""
+    model, deformer = FACES[face], GeometricDeformer(FACES[face])
+    _, y, z = model.jaw.pivot
+    for opening in OPENINGS:
+        for name, act in deformer.stages().items():
+            act(FacePose.of(jaw_open=opening))
+            if name == "lips":
+                break
+        before, after = (p[:, 1] - y + 1j * (p[:, 2] - z) for p in (model.vertices, deformer.geometry.vertices))
+        share = np.angle(after / before) / (opening * math.radians(model.jaw.widest_deg))
+        for ring in model.lips.rings[:LIP_RINGS]:
+            np.testing.assert_allclose(share[[ring.upper[0], ring.upper[-1]]], 1 / 3, atol=0.01)
+            assert share[ring.upper[len(ring.upper) // 2]] == pytest.approx(0, abs=0.015)
+            assert share[ring.lower[len(ring.lower) // 2]] == pytest.approx(1, abs=0.015)

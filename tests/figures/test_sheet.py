@@ -41,6 +41,7 @@ def test_a_pose_mixes_emotions_and_muscles(tmp_path):
         (["--emotions", "hunger"], "'hunger'", 1),
         (["--levels", "high"], "0.25,0.5,1", 2),
         (["--levels", "1.5"], "1.5", 1),
+        (["--size", "4000x4000"], "megapixels", 1),
     ],
 )
 def test_what_is_wrong_is_said_and_nothing_written(tmp_path, arguments, said, code):

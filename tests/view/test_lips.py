@@ -84,6 +84,15 @@ def test_fine_lips_are_smoother_than_the_mesh(model):
     assert (bends[1] < 0.0).mean() <= (bends[0] < 0.0).mean() + 1e-4
 
 
+def test_a_wide_open_mouth_has_no_waves_between_its_vertices(model):
+    lips = FineLips(model, 2)
+    vertices = model.vertices + model.shapes["jawOpen"].dense(len(model.vertices))
+    places, _ = lips.update(vertices, vertex_normals(vertices, model.triangles))
+    grid = places.reshape(lips._fine.rings, lips._fine.columns, 3)
+    between = 0.5 * (grid[:, 0::2] + np.roll(grid, -2, axis=1)[:, 0::2])
+    assert np.linalg.norm(grid[:, 1::2] - between, axis=2).max() < 1.2 * MM
+
+
 def test_fields_go_along(model):
     lips = FineLips(model, 2)
     extended = lips.extended(model.material)

@@ -23,6 +23,7 @@ from agentface.deform.compiled import (
     lips,
     normals,
     shading,
+    squash,
     wrinkles,
 )
 from agentface.deform.frame import PartTables
@@ -104,6 +105,7 @@ def _compile(sources: str) -> Callable[..., None]:
             jaw.apply(tables.jaw, values, points)
             lips.surface(tables.lips, points)
             contact.apply(tables.contact, values, points)
+            squash.apply(tables.creases, points)
             between.apply(tables.between, points)
             _shade(tables, values, points, faces, face)
             eyes.apply(tables.eyes, values, faces.eye_rotations[face])

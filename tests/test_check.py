@@ -1,0 +1,231 @@
+"""``agentface check`` tells every fault of a face with file and line, and calls good only what can be drawn."""
+
+import re
+import shutil
+from itertools import pairwise
+
+import pytest
+from click.testing import CliRunner
+
+from agentface.anatomy.model import load_model
+from agentface.cli import cli
+from agentface.errors import DataError
+from agentface.resources import face_folder
+
+SAME_END = ("wrinkles.yaml", "offset: [0.0, 0.91, 0.0]", "offset: [0.0, 0.2, 0.0]")
+
+
+@pytest.fixture
+def face(tmp_path):
+    return shutil.copytree(face_folder("amber"), tmp_path / "mine")
+
+
+def edit(face, name, old, new):
+    text = (face / name).read_text()
+    assert old in text
+    (face / name).write_text(text.replace(old, new, 1))
+
+
+def line_of(face, name, text):
+    (line,) = [i for i, row in enumerate((face / name).read_text().splitlines(), 1) if text in row][:1]
+    return line
+
+
+def faults(place):
+    result = CliRunner().invoke(cli, ["check", str(place)])
+    assert result.exit_code in (0, 1), result.output
+    said = result.output.splitlines()
+    assert (result.exit_code == 0) == said[0].endswith(": good")
+    return [row.strip() for row in said[1:]]
+
+
+def same_for_load(face):
+    with pytest.raises(DataError) as caught:
+        load_model(face)
+    return [str(fault) for fault in caught.value.faults]
+
+
+def test_every_file_of_a_face_is_known():
+    files = [path for path in sorted(face_folder("amber").glob("*.yaml")) if path.name != "recipe.yaml"]
+    assert "wrinkles.yaml" in [path.name for path in files]
+    for path in files:
+        assert not faults(path)
+
+
+# file, old text, new text, what is told, a text of the line it is told at
+RINGS = [
+    ("eyelids.yaml", "edge_ring: 3", "edge_ring: 300", "edge_ring: expected a ring in 0..10, got 300", "edge_ring"),
+    ("eyelids.yaml", "edge_ring: 3", "edge_ring: 11", "edge_ring: expected a ring in 0..10, got 11", "edge_ring"),
+    ("eyelids.yaml", "[1273, 1287,", "[1273] #", "at least 3 items", "[1273] #"),
+    ("eyelids.yaml", "[1273, 1287,", "[] #", "at least 3 items", "[] #"),
+    ("eyelids.yaml", "[1273, 1287,", "[1287,", "the same two ends, got 1287 and 1216 above, 1273", "[1287,"),
+    ("eyelids.yaml", "  r:\n", "  q:\n", "rings: expected the keys l and r", "rings:"),
+    ("lips.yaml", "[3374, 3373, 3384,", "[3374, 3384, 3373,", "rings.1.upper.0: expected neighbours", "[3374, 3384,"),
+    ("lips.yaml", "3373, 3384,", "3384,", "neighbours on the mesh, got 3374, then 3384", "[3374, 3384,"),
+    (
+        "lips.yaml",
+        "3373, 3384,",
+        "3384,",
+        "rings.1: expected 38 vertices, as in the other rings, got 37",
+        "[3374, 3384,",
+    ),
+    (
+        "lips.yaml",
+        "[3374, 3373,",
+        "[3374, 3373, 3374, 3373,",
+        "expected each vertex once, got 3374 again",
+        "3374, 3373,",
+    ),
+    ("lips.yaml", "[3374, 3381,", "[-3, 3381,", "rings.1.lower.0: expected vertices in 0..5918, got -3", "[-3, 3381,"),
+]
+
+
+@pytest.mark.parametrize(("name", "old", "new", "told", "at"), RINGS)
+def test_rings_that_are_none_are_told_by_line(face, name, old, new, told, at):
+    edit(face, name, old, new)
+    for found in (faults(face), same_for_load(face)):
+        assert any(row.startswith(f"{face / name}:{line_of(face, name, at)}: ") and told in row for row in found), found
+        assert all(re.match(rf"{face / name}:\d+: ", row) for row in found)
+
+
+def test_a_ring_too_few_is_told(face):
+    text = (face / "lips.yaml").read_text()
+    first, second = (match.start() for match in list(re.finditer("^- upper", text, re.M))[:2])
+    (face / "lips.yaml").write_text(text[:first] + text[second:])
+    assert any("lips.yaml:3: rings: expected at least 9 items" in row for row in faults(face))
+
+
+def test_rings_in_another_order_are_told_with_their_file(face):
+    text = (face / "lips.yaml").read_text()
+    start = [match.start() for match in re.finditer("^- upper|^orbicularis", text, re.M)]
+    rings = [text[i:j] for i, j in pairwise(start)]
+    rings[2], rings[5] = rings[5], rings[2]
+    (face / "lips.yaml").write_text(text[: start[0]] + "".join(rings) + text[start[-1] :])
+    load_model(face)
+    (found,) = faults(face)
+    assert found.startswith(f"{face / 'lips.yaml'}")
+    assert "joined one to one" in found
+
+
+NUMBERS = [
+    ("lips.yaml", "reach: {upper: 0.35", "reach: {upper: -1", "reach.upper"),
+    ("lips.yaml", "reach: {upper: 0.35", "reach: {upper: 0", "reach.upper"),
+    ("lips.yaml", "upper: [0.065,", "upper: [1e30,", "extrusion.upper.0"),
+    ("lips.yaml", "upper: [15.0,", "upper: [900.0,", "rotation_deg.upper.0"),
+    ("eyes.yaml", "radius: 0.013457", "radius: 13.457", "radius"),
+    ("eyes.yaml", "centre: [0.026281,", "centre: [13.0,", "centre.0"),
+    ("eyes.yaml", "centre: [0.026281,", "centre: [-0.026281,", "centre"),
+    ("eyes.yaml", "centre: [0.026281,", "centre: [0.0,", "centre"),
+    ("jaw.yaml", "pivot: [0.0,", "pivot: [0.3,", "pivot"),
+    ("jaw.yaml", "pivot: [0.0, -0.047488", "pivot: [0.0, -4.7", "pivot.1"),
+    ("wrinkles.yaml", "facing: [0.0, 0.0, 1.0]", "facing: [0.0, 0.0, 1e300]", "facing.2"),
+    ("wrinkles.yaml", "facing: [0.0, 0.0, 1.0]", "facing: [0.0, 0.0, 1e-200]", "facing"),
+    (*SAME_END, "trains.forehead_medial.end"),
+]
+
+
+@pytest.mark.parametrize(("name", "old", "new", "where"), NUMBERS)
+def test_impossible_numbers_are_told_by_line(face, name, old, new, where):
+    edit(face, name, old, new)
+    for found in (faults(face), same_for_load(face)):
+        (row,) = found
+        assert re.match(rf"{face / name}:\d+: \S*{re.escape(where)}: expected .*, got ", row)
+        assert "Anchor(" not in row
+
+
+def test_a_train_of_no_length_between_landmarks_is_told_by_line(face):
+    """Only the placed landmarks show it: the way from one to the other goes along ``facing``."""
+    model = load_model(face)
+    way = model.landmarks["subnasale"] - model.landmarks["nose_tip"]
+    text = (face / "wrinkles.yaml").read_text()
+    row = text[text.index("  forehead_medial:") : text.index("  forehead_middle:")]
+    new = re.sub(r"facing: .*", f"facing: {(10 * way / abs(way).max()).tolist()}", row)
+    new = re.sub(r"start:\n +at: glabella\n +offset: .*", "start:\n      at: nose_tip", new)
+    new = re.sub(r"end:\n +at: glabella\n +offset: .*", "end:\n      at: subnasale", new)
+    (face / "wrinkles.yaml").write_text(text.replace(row, new))
+    (found,) = faults(face)
+    line = line_of(face, "wrinkles.yaml", "at: subnasale") - 1
+    assert found.startswith(f"{face / 'wrinkles.yaml'}:{line}: trains.forehead_medial.end: expected a point beside")
+
+
+def test_a_muscle_of_no_length_is_told_by_line(face):
+    text = (face / "muscles.yaml").read_text()
+    row = text[text.index("  risorius:") :]
+    at, offset = re.search(r"origin:\n\s+at: (.*)\n\s+offset: (.*)\n", row).groups()
+    same = re.sub(r"(insertion:\n\s+at: ).*(\n\s+offset: ).*", rf"\g<1>{at}\g<2>{offset}", row, count=1)
+    (face / "muscles.yaml").write_text(text.replace(row, same))
+    (found,) = faults(face)
+    assert re.match(rf"{face / 'muscles.yaml'}:\d+: muscles.risorius.insertion: expected a point apart", found)
+
+
+def test_all_faults_of_a_file_are_told_at_once(face):
+    edit(face, "regions.yaml", "upper_lip: 0.42", "upper_lp: 0.42")
+    edit(face, "regions.yaml", "lower_face: 0.45", "lower_face: -0.45")
+    edit(face, "regions.yaml", "eyebrow_l: [4646,", "eyebrow_l: [1,")
+    edit(face, "lips.yaml", "[3378, 3377,", "[99999, 3377,")
+    edit(face, "lips.yaml", "roll_from: 0.4", "roll_from: .nan")
+    edit(face, "eyelids.yaml", "meeting: 0.15", "meeting: two")
+    edit(face, "eyelids.yaml", "[1235, 1239,", "[88888, 1239,")
+    edit(face, "eyelids.yaml", "edge_ring: 3", "edge_ring: 12")
+    edit(face, *SAME_END)
+    edit(face, "wrinkles.yaml", "count: 5", "count: 0")
+    found = faults(face)
+    for name, where in (
+        ("regions.yaml", "limits.upper_lp"),
+        ("regions.yaml", "limits.lower_face"),
+        ("regions.yaml", "limits"),
+        ("regions.yaml", "sub_regions.eyebrow_l"),
+        ("lips.yaml", "rings.0.upper.0"),
+        ("lips.yaml", "orbicularis_oris.roll_from"),
+        ("eyelids.yaml", "meeting"),
+        ("eyelids.yaml", "rings.r.0.upper.0"),
+        ("eyelids.yaml", "edge_ring"),
+        ("wrinkles.yaml", "trains.forehead_medial.end"),
+        ("wrinkles.yaml", "trains.forehead_medial.count"),
+    ):
+        assert sum(bool(re.match(rf"{face / name}:\d+: {re.escape(where)}: ", row)) for row in found) == 1, (
+            where,
+            found,
+        )
+    assert len(found) == 11
+    assert any("did you mean upper_lip" in row for row in found)
+
+
+RUBBISH = [
+    "",
+    "[1, 2]",
+    "a: 1",
+    "1: 2",
+    "rings: 3",
+    "rings: [1, {upper: 2}, {lower: [a]}]",
+    "rings: {l: 3, r: [{upper: [1], lower: [.nan]}], 3: []}\nedge_ring: yes",
+    "regions: {1: 2, a: [1, b]}\nlimits: {1: 2}\nsub_regions: 3\nvertices: x",
+    "trains: {a: {start: 1, end: {at: 3}, facing: [a], muscles: [[1]]}, 3: 4}",
+]
+
+
+@pytest.mark.parametrize("name", ["regions.yaml", "lips.yaml", "eyelids.yaml", "wrinkles.yaml"])
+@pytest.mark.parametrize("content", RUBBISH)
+def test_rubbish_is_faults_and_no_error(face, name, content):
+    (face / name).write_text(content)
+    found = faults(face)
+    assert found
+    assert all(str(face / name) in row for row in found)
+
+
+@pytest.mark.parametrize(
+    ("options", "told"),
+    [
+        (["bench", "nope"], "known: deform"),
+        (["bench", "fuzy"], "did you mean fuzzy"),
+        (["bench", ""], "known: deform"),
+        (["bench", "deform", "--face", "ambre"], "did you mean amber"),
+        (["figures", "nope"], "known: lips"),
+        (["figures", "wrinkle"], "did you mean wrinkles"),
+    ],
+)
+def test_names_are_checked_before_anything_is_measured_or_drawn(options, told):
+    result = CliRunner().invoke(cli, options)
+    assert result.exit_code == 1
+    assert told in result.output
+    assert "measuring" not in result.output
