@@ -19,7 +19,7 @@ _FIRST_RING, _LAST_RING = INNER_RINGS - 1, INNER_RINGS + 5
 _FALL = (0.3, 0.65, 1, 1, 1, 1, 1, 1, 1, 0.8, 0.55, 0.32, 0.14, 0.04)  # of the way the lips are pushed, by rings
 SPREAD, STEEP = np.float32(1.07), np.float32(4.0)
 """How the push at a place between two columns is shared: enough for their mean, and continuous."""
-ROUNDS = 3
+ROUNDS = 2
 """How often pressed lips are drawn together and parted: each round leaves less of the gap."""
 PARTINGS = 3
 """How often lips are parted after the teeth have pushed them: each time takes what the last one left."""
@@ -136,7 +136,7 @@ def _close_lips(tables: ContactTables, press: float, points: Floats) -> None:
         gap = np.maximum(-_overlaps(tables.grid, own, other, sign, points)[0].max((0, 1)), np.float32(0.0))
         near = np.clip(np.float32(2.0) - gap / FARTHEST, np.float32(0.0), np.float32(1.0))
         near *= gap
-        near[[0, -1]] = 0.0
+        near[[0, 1, -2, -1]] = 0.0
         even = np.float32(0.5) * near[1:-1] + np.float32(0.25) * (near[:-2] + near[2:])
         move[own[1:-1]] = np.float32(-0.5 * sign) * share * even
     points[tables.grid, 1] += tables.fall[:, None] * move

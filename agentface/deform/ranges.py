@@ -15,7 +15,7 @@ _HIGH = np.array([known.high for known in PARAMETERS], np.float32)
 
 def check_pose(values: Floats) -> None:
     """Raise InvalidValueError, naming the first parameter, unless ``values (COUNT,)`` lie within their ranges."""
-    if not ((values >= _LOW) & (values <= _HIGH)).all():
+    if np.count_nonzero((values >= _LOW) & (values <= _HIGH)) != len(values):  # a frame's time: faster than all()
         raise _refusal(values)
 
 

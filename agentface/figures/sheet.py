@@ -21,7 +21,7 @@ _LARGEST = 2**26  # pixels of a whole sheet
 
 
 def check_sheet_size(size: tuple[int, int], count: int, columns: int) -> None:
-    """Raise InvalidValueError when ``count`` panels of ``size`` pixels would make a sheet of more than 67 megapixels."""
+    """Raise InvalidValueError when ``count`` panels of ``size`` pixels would make more than 67 megapixels."""
     pixels = columns * (size[0] + GAP) * -(-count // columns) * (size[1] + CAPTION + GAP)
     if pixels > _LARGEST:
         text = f"{count} pictures of {size[0]}x{size[1]}, {pixels / 1e6:.0f} megapixels"

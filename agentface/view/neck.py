@@ -22,7 +22,7 @@ class Neck:
         self._share = share[self._where][:, None]
 
     def hold(self, head: Floats, vertices: Floats, normals: Floats) -> None:
-        """Move ``vertices (V, 3)`` and turn ``normals`` in place, so that ``head (4, 4)`` brings them where they belong.
+        """Move ``vertices (V, 3)`` and turn ``normals`` in place, so that ``head (4, 4)`` brings them home.
 
         The picture turns all of the skin by ``head``: what is to stay is turned back before.
         """

@@ -72,7 +72,7 @@ def _close_lips(tables: ContactTables, press: np.float32, points: Floats) -> Non
         sign = _ONE if lip == 0 else -_ONE
         across, up = _rings(tables, other, points)
         near = np.zeros(own.shape[0], np.float32)
-        for k in range(1, own.shape[0] - 1):
+        for k in range(2, own.shape[0] - 2):
             gap = np.float32(np.inf)
             for ring in range(tables.first, tables.last + 1):
                 vertex = tables.grid[ring, own[k]]
