@@ -29,6 +29,9 @@ CALLS = {
     "frames-later": (*SERVE, "face-%05d.png", "--every-frame"),
 }
 every_call = pytest.mark.parametrize("call", CALLS.values(), ids=CALLS)
+KINDS = {name: CALLS[name] for name in ("picture", "film", "frames-later")}
+each_kind = pytest.mark.parametrize("call", KINDS.values(), ids=KINDS)
+"""One call for each way that leads to a file."""
 
 
 @pytest.fixture(autouse=True)
@@ -79,7 +82,7 @@ def test_no_driver_at_all(folder, tmp_path):
 
 
 @pytest.mark.gl
-@every_call
+@each_kind
 def test_a_lost_context(folder, monkeypatch, call):
     draw = Renderer.draw
 
@@ -101,7 +104,7 @@ def test_sizes(folder, call, size):
     assert "1..8192" in fail(folder, *call, size=size, code=2)
 
 
-@every_call
+@each_kind
 @pytest.mark.parametrize("place", ["no/such/folder", "/proc", "face.png"])
 def test_places_that_cannot_be_written(folder, tmp_path, call, place):
     if place == "face.png":
@@ -113,7 +116,7 @@ def test_places_that_cannot_be_written(folder, tmp_path, call, place):
     assert "folder" in said
 
 
-@every_call
+@each_kind
 def test_an_output_that_is_a_folder(folder, tmp_path, call):
     name = next(word for word in call if word.endswith((".png", ".mp4")))
     (tmp_path / "there" / name).mkdir(parents=True)
@@ -167,7 +170,7 @@ def shaders(tmp_path, monkeypatch):
 
 
 @pytest.mark.gl
-@every_call
+@each_kind
 def test_a_broken_shader(folder, shaders, call):
     broken = shaders / "eye.frag.glsl"
     text = broken.read_text()
