@@ -37,7 +37,8 @@ def apply(tables: ContactTables, values: Floats, points: Floats) -> None:
         points[vertex, 1] -= sine * ahead
         points[vertex, 2] += cosine * ahead
     for _ in range(PARTINGS):
-        _part_lips(tables, points)
+        if not _part_lips(tables, points):
+            break
 
 
 @njit(cache=True, nogil=True, error_model="numpy", inline="always")
@@ -88,19 +89,21 @@ def _close_lips(tables: ContactTables, press: np.float32, points: Floats) -> Non
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def _part_lips(tables: ContactTables, points: Floats) -> None:
+def _part_lips(tables: ContactTables, points: Floats) -> bool:
+    """Whether any lip had to give way: where none had, another round would find none."""
     columns = tables.grid.shape[1]
     up, down = np.zeros(columns, np.float32), np.zeros(columns, np.float32)
     any_up = _push_apart(tables, tables.upper, tables.lower, tables.overlap_upper, _ONE, points, up, down)
     any_down = _push_apart(tables, tables.lower, tables.upper, tables.overlap_lower, -_ONE, points, down, up)
     if not (any_up or any_down):
-        return
+        return False
     move = up - down
     for end in (0, -1):
         a, b = tables.upper[end], tables.lower[end]
         move[a] = _HALF * (move[a] + move[b])
         move[b] = move[a]
     _move(tables, move, points)
+    return True
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
