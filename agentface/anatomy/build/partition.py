@@ -13,7 +13,6 @@ from agentface.anatomy.build.loops import border_loops, rings
 from agentface.anatomy.regions import HALF_REGIONS, REGIONS, REST, SUB_REGIONS
 from agentface.conventions import SIDES, Doubles, Indices
 
-MOUTH_CORNERS = (7272, 527)
 _LIP_RINGS_OUT, _LIP_RINGS_IN = 8, 6
 _VERMILION, _MUCOSA = 7, 2
 _CORNER_FROM = 0.92
