@@ -21,6 +21,8 @@ demo: $(INSTALLED) opengl ## draw out/expressions.png, film out/demo.mp4 with an
 	@$(BIN)/python examples/make_demo.py --out out
 	@printf '\nThese commands are in %s.\n' $(BIN)
 
+# many tests start Python anew, which takes three times as long where it may not keep what it compiled
+test: export PYTHONDONTWRITEBYTECODE =
 test: $(INSTALLED) opengl ## ruff, mypy and all tests
 	@$(BIN)/ruff check $(CODE)
 	@$(BIN)/ruff format --check $(CODE)

@@ -9,7 +9,7 @@ import click
 
 from agentface.errors import AgentFaceError, DataError
 
-COMMANDS = ("render", "sheet", "serve", "show", "play", "explain", "check", "bench", "calibrate", "figures")
+COMMANDS = ("render", "sheet", "serve", "show", "play", "explain", "check", "unwrap", "bench", "calibrate", "figures")
 
 
 class _Commands(click.Group):

@@ -8,6 +8,8 @@ uniform float mouth_light;  // how much light the lips let in
 
 const vec3 WRAP = vec3(0.36, 0.20, 0.14);  // how far light goes round the terminator, by channel
 const vec3 RIM_WRAP = vec3(0.1);
+const vec3 SCATTERED = vec3(0.75, 0.35, 0.20);  // how far light goes through the skin, by channel
+const vec2 F0 = vec2(0.026, 0.036);  // of skin that is dry and moist
 
 // The skin's colour: tint is redness, eye socket, gloss, under the hair; blotches 0..1 is even at 0.5.
 vec3 complexion_colour(vec4 tint, float mouth, float wet, float blotches) {
@@ -36,7 +38,7 @@ vec3 bled(float light) {
 
 // Cosines of a light for the channels: red follows the blurred normal, blue the sharp one.
 vec3 scattered(vec3 sharp, vec3 soft, vec3 l) {
-    return mix(vec3(dot(sharp, l)), vec3(dot(soft, l)), vec3(0.75, 0.35, 0.20));
+    return mix(vec3(dot(sharp, l)), vec3(dot(soft, l)), SCATTERED);
 }
 
 float roughness(float gloss, float lip, float moist) {

@@ -41,6 +41,6 @@ void main() {
         gloss += light_colour[i].rgb * ggx(max(dot(n, h), 0.0), rough) * visibility(n_l, n_v, rough) * fresnel(0.042, max(dot(view, h), 0.0)) * n_l * PI;
     }
     gloss += hemisphere(reflect(-view, n)) * fresnel(0.042, n_v) * 0.6;
-    const vec3 WARM = vec3(1.04, 0.96, 0.88);  // light that the lips and cheeks let through
-    colour = vec4(finish((albedo * light * WARM + gloss) * reach), 1.0);
+    vec3 warm = mix(vec3(1.45, 0.76, 0.62), vec3(1.04, 0.96, 0.88), depth);  // light that lips and cheeks let through
+    colour = vec4(finish((albedo * light * warm + gloss * depth) * reach), 1.0);
 }

@@ -3,7 +3,7 @@
 in vec3 place;
 in vec3 facing;
 in vec4 material;      // tooth, gum, tongue
-in vec2 detail;        // on a tooth: across and up; on cloth: turn and metres from the collar
+in vec2 detail;        // on a tooth: across and up
 uniform mat4 moved;    // from rest into the scene
 
 centroid out vec3 position, normal, rest_position;

@@ -3,43 +3,56 @@
 #include "frame.glsl"
 #include "surface.glsl"
 #include "shading.glsl"
+#include "noise.glsl"
+#include "shadow.glsl"
 #include "complexion.glsl"
 #include "atlas.glsl"
 #include "skin_place.glsl"
 
-centroid out vec3 position, normal, blurred_normal, rest_position;
-centroid out vec3 colour_here, around, shine_around;  // albedo without lips; light, and gloss, of all but the key
-centroid out vec4 matter;               // lip, inside of the mouth, wet lid margin, gloss
-centroid out vec3 light_here;           // how much of the surroundings' light arrives; shine; under the hair
+centroid out vec3 normal, rest_position, towards;   // towards the camera, metres
+centroid out vec3 around;      // the picture of all light but the key's
+centroid out vec3 key_body;    // the key light that the skin sends back where it faces it
+centroid out vec4 matter;      // lip, moist, roughness, how much of the key light's gloss is seen
+centroid out float soft_key;   // cosine of the blurred skin to the key light
 #ifdef WRINKLED
 centroid out vec2 atlas;
+#endif
+#ifdef TEXTURED
+#include "worn.glsl"
 #endif
 
 void main() {
     vec4 placed = head * vec4(edge_position(ends), 1.0);
-    vec3 n = edge_normal(ends);
-    position = placed.xyz;
-    normal = mat3(head) * n;
-    blurred_normal = mat3(head) * (soft_normal + 0.6 * (n - rest_normal));
+    vec3 n = edge_normal(ends), position = placed.xyz, soft = normalize(mat3(head) * (soft_normal + 0.6 * (n - rest_normal)));
+    n = mat3(head) * n;
+    normal = n;
     rest_position = rest;
+    towards = eye_point.xyz - position;
     gl_Position = skin_clip(position);
 #ifdef WRINKLED
     atlas = atlas_place(rest);
 #endif
     float lip = smoothstep(0.30, 0.75, material.x), mouth = smoothstep(0.35, 0.9, material.y), wet = smoothstep(0.2, 0.95, material.z);
-    matter = vec4(material.xyz, complexion.z);
-    colour_here = complexion_colour(complexion, mouth, wet, 0.5);
-    float sky = sky_light(ambient, lip, mouth, rest.z);
-    light_here = vec3(sky, sheen(ambient, mouth, complexion.w, max(lip, wet)), complexion.w);
-    vec3 soft = normalize(blurred_normal);
-    around = hemisphere(soft);
-    vec3 view = normalize(eye_point.xyz - position), wrap = WRAP * (1.0 - 0.6 * mouth);
-    float n_v = max(dot(normal, view), 0.02), rough = 0.9 * roughness(complexion.z, lip, max(mouth, wet)), f0 = mix(0.026, 0.036, max(lip, wet));
-    shine_around = hemisphere(reflect(-view, normal)) * fresnel(f0, n_v) * 0.5;
+    float moist = max(mouth, wet), sky = sky_light(ambient, lip, mouth, rest.z), shown = sheen(ambient, mouth, complexion.w, max(lip, wet));
+    float mottle = textureLod(noise_volume, rest * 9.0, 0.0).r - 0.5;
+    vec3 albedo = mix(complexion_colour(complexion, mouth, wet, 0.5) * (1.0 + 0.16 * mottle), lip_colour(), 0.86 * lip * (1.0 - mouth));
+
+    vec3 view = normalize(towards), wrap = WRAP * (1.0 - 0.6 * mouth), light = hemisphere(soft), occlusion = bled(sky), key = light_direction[0].xyz;
+    float n_v = max(dot(n, view), 0.02), rough = roughness(complexion.z, lip, moist), f0 = mix(F0.x, F0.y, max(lip, wet));
+    vec3 gloss = hemisphere(reflect(-view, n)) * fresnel(f0, n_v) * 0.5;
     for (int i = 1; i < LIGHTS; i++) {
         vec3 l = light_direction[i].xyz;
-        around += light_colour[i].rgb * wrapped(scattered(normal, soft, l), i == 1 ? wrap : RIM_WRAP);
-        shine_around += light_colour[i].rgb * glint(normal, l, view, n_v, rough, f0);
+        light += light_colour[i].rgb * wrapped(scattered(n, soft, l), i == 1 ? wrap : RIM_WRAP);
+        gloss += light_colour[i].rgb * glint(n, l, view, n_v, 0.9 * rough, f0);
     }
-    around *= bled(sky);
+    gloss *= 0.8 * shown;
+#ifdef TEXTURED
+    albedo = wear(albedo, gloss, moist);
+    gloss = vec3(0.0);
+#endif
+    around = albedo * light * occlusion + gloss;
+    soft_key = dot(soft, key);
+    float lit = mix(1.0, key_light(position, n), smoothstep(-0.05, 0.30, soft_key) * (1.0 - mouth));
+    key_body = albedo * light_colour[0].rgb * bled(lit) * mix(vec3(1.0), occlusion, 0.75);
+    matter = vec4(lip, moist, rough, lit * shown);
 }

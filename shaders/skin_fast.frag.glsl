@@ -1,28 +1,22 @@
 #version 330 core
-#include "frame.glsl"
-#include "shading.glsl"
-#include "noise.glsl"
-#include "develop.glsl"
-#ifdef WRINKLED
-#include "wrinkles.glsl"
-centroid in vec2 atlas;
-#endif
-centroid in vec3 position, normal, rest_position;
-centroid in vec3 body;
-centroid in vec2 shiny;
+// Skin lit by vertex; wrinkles and grain by pixel.
+uniform sampler2D wrinkle_atlas;
+in vec3 body;
+in vec2 atlas;
 out vec4 colour;
+#ifdef TEXTURED
+#include "develop.glsl"
+#include "paint.glsl"
+#endif
 
-const float F0 = 0.028;
+const vec3 WARM = vec3(0.75, 1.0, 1.1);  // red light gets round a wrinkle through the skin
 
 void main() {
-    vec3 view = normalize(eye_point.xyz - position), n = normalize(normal), light = body;
-    vec3 key = light_direction[0].xyz, h = normalize(key + view);
-#ifdef WRINKLED
-    vec4 raised = wrinkled_normal(n, position, atlas);
-    light *= wrinkle_shade(n, raised, key);
-    n = raised.xyz;
+    float change = 2.0 * texture(wrinkle_atlas, atlas).a - 1.0;
+#ifdef TEXTURED
+    vec3 smooth_skin = finish(painted(body));
+#else
+    vec3 smooth_skin = body;
 #endif
-    float grain = noise(rest_position * 37.0).g - 0.5, n_l = max(dot(n, key), 0.0), n_v = max(dot(n, view), 0.02);
-    float lobe = PI * n_l * ggx(max(dot(n, h), 0.0), 0.8 * shiny.y) * visibility(n_l, n_v, 0.8 * shiny.y) * fresnel(F0, max(dot(view, h), 0.0));
-    colour = vec4(finish(light * (1.0 + 0.13 * grain) + light_colour[0].rgb * (lobe * shiny.x * (0.8 + 0.8 * grain))), 1.0);
+    colour = vec4(smooth_skin + smooth_skin * change * WARM, 1.0);
 }

@@ -1,32 +1,28 @@
 #version 330 core
-// Skin lit by vertex, but for the key light's shine.
+// Skin lit by vertex.
 #include "frame.glsl"
 #include "surface.glsl"
 #include "shading.glsl"
 #include "noise.glsl"
 #include "complexion.glsl"
 #include "atlas.glsl"
+#include "develop.glsl"
 #include "skin_place.glsl"
 in float lit_at_rest;  // how much of the key light arrives at rest
 
-centroid out vec3 position, normal, rest_position;
-centroid out vec3 body;   // light from the skin
-centroid out vec2 shiny;  // how much of the key light's shine is seen; roughness
-#ifdef WRINKLED
-centroid out vec2 atlas;
+out vec3 body;   // the picture of smooth skin; light, where the skin wears a picture
+out vec2 atlas;
+#ifdef TEXTURED
+#include "worn.glsl"
 #endif
 
 void main() {
     vec4 placed = head * vec4(edge_position(ends), 1.0);
     vec3 at_normal = edge_normal(ends), n = mat3(head) * at_normal;
     vec3 soft = normalize(mat3(head) * (soft_normal + 0.6 * (at_normal - rest_normal)));
-    position = placed.xyz;
-    normal = n;
-    rest_position = rest;
+    vec3 position = placed.xyz;
     gl_Position = skin_clip(position);
-#ifdef WRINKLED
     atlas = atlas_place(rest);
-#endif
     float lip = smoothstep(0.30, 0.75, material.x), mouth = smoothstep(0.35, 0.9, material.y), wet = smoothstep(0.2, 0.95, material.z);
     float moist = max(mouth, wet), sky = sky_light(ambient, lip, mouth, rest.z);
     vec4 coarse = textureLod(noise_volume, rest * 9.0, 0.0);
@@ -36,14 +32,18 @@ void main() {
     vec3 occlusion = bled(sky), wrap = WRAP * (1.0 - 0.6 * mouth), view = normalize(eye_point.xyz - position);
     float lit = mix(1.0, lit_at_rest, smoothstep(-0.05, 0.30, dot(soft, light_direction[0].xyz)) * (1.0 - mouth));
     vec3 diffuse = hemisphere(soft) * occlusion, gloss = vec3(0.0);
-    float n_v = max(dot(n, view), 0.02), rough = roughness(complexion.z, lip, moist), f0 = mix(0.026, 0.036, max(lip, wet));
+    float n_v = max(dot(n, view), 0.02), rough = roughness(complexion.z, lip, moist), f0 = mix(F0.x, F0.y, max(lip, wet));
     for (int i = 0; i < LIGHTS; i++) {
         vec3 l = light_direction[i].xyz, cosines = wrapped(scattered(n, soft, l), i < 2 ? wrap : RIM_WRAP);
         diffuse += light_colour[i].rgb * cosines * (i == 0 ? bled(lit) * mix(vec3(1.0), occlusion, 0.75) : occlusion);
-        if (i > 0) gloss += light_colour[i].rgb * glint(n, l, view, n_v, 0.9 * rough, f0);
+        gloss += light_colour[i].rgb * (i == 0 ? lit : 1.0) * glint(n, l, view, n_v, 0.9 * rough, f0);
     }
     gloss += hemisphere(reflect(-view, n)) * fresnel(f0, n_v) * 0.5;
     float shown = sheen(ambient, mouth, complexion.w, max(lip, wet));
-    body = albedo * diffuse + 0.8 * gloss * shown;
-    shiny = vec2(lit * shown, rough);
+    gloss *= 0.8 * shown;
+#ifdef TEXTURED
+    body = wear(albedo, gloss, moist) * diffuse;
+#else
+    body = finish(albedo * diffuse + gloss);
+#endif
 }

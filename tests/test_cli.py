@@ -9,12 +9,14 @@ import socket
 import subprocess
 import sys
 import threading
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from click.testing import CliRunner
 
 from agentface.cli import COMMANDS, cli
+from agentface.errors import GraphicsError
 from agentface.resources import face_folder, rules_file
 
 FACE_OPTIONS = ("--face", "--deformer")
@@ -192,6 +194,24 @@ def test_bench_prints_what_the_benchmarks_say(monkeypatch):
     assert re.search(r"deform.inner.time_us +1.235", call("bench").output)
 
 
+def test_all_benchmarks_but_the_one_that_draws_run_without_opengl(monkeypatch):
+    from agentface import bench
+
+    def run(name, face):
+        if name == "render":
+            raise GraphicsError("no OpenGL:\n  libEGL.so.1 is missing")
+        return {"time_us": 1.0}
+
+    monkeypatch.setattr(bench, "run", run)
+    result = call("bench", "--json", "-")
+    assert result.exit_code == 0, result.output
+    figures = json.loads(result.stdout)
+    assert figures.pop("render") == {"not_run": "no OpenGL: libEGL.so.1 is missing"}
+    assert figures == {name: {"time_us": 1.0} for name in bench.BENCHES if name != "render"}
+    assert re.search(r"render.not_run +no OpenGL: libEGL", call("bench").stdout)
+    assert "libEGL.so.1 is missing" in fail("bench", "render"), "what was asked for by name must run"
+
+
 def test_bench_names_the_benchmarks():
     assert "known: deform, fuzzy" in fail("bench", "nothing")
 
@@ -203,7 +223,9 @@ def test_a_taken_port_is_one_clear_message():
         assert f"port {port}" in fail("serve", "--osc", f"127.0.0.1:{port}", "--duration", "1")
 
 
-@pytest.mark.parametrize("options", [["--osc", "7400"], ["--osc", "host:99999"], ["--duration", "0"], ["--view", "tv"]])
+@pytest.mark.parametrize(
+    "options", [["--osc", "7400"], ["--osc", "host:99999"], ["--duration", "0"], ["--view", "tv"], ["--look", "ginger"]]
+)
 def test_serve_usage(options):
     fail("serve", *options, code=2)
 
@@ -250,6 +272,27 @@ def test_serve_records_a_film(tmp_path):
     assert times[0] < 0.1
     assert 0.2 < times[-1] < 0.6
     assert times == sorted(set(times))
+
+
+@pytest.mark.gl
+def test_serve_films_and_shows_a_look(tmp_path, monkeypatch):
+    from agentface import Face
+
+    words = ("serve", "--osc", "127.0.0.1:0", "--look")
+    filmed = ("--record", tmp_path / "face-%05d.png", "--duration", "0.1", "--fps", "10", "--size", "96x64")
+    assert "'nobody'" in fail(*words, "nobody", *filmed)
+    assert not list(tmp_path.iterdir())
+    result = call(*words, "ginger", *filmed)
+    assert result.exit_code == 0, result.output
+    picture = pixels(tmp_path / "face-00000.png")
+    np.testing.assert_array_equal(picture, Face(look="ginger").render((96, 64), alpha=True))
+    assert (picture != Face().render((96, 64), alpha=True)).any()
+
+    shown = []
+    window = SimpleNamespace(run=lambda: None)
+    monkeypatch.setattr("agentface.commands.show.make_window", lambda face, look: shown.append(look) or window)
+    assert call(*words, "ginger", "--view", "window").exit_code == 0
+    assert shown == ["ginger"]
 
 
 @pytest.mark.gl

@@ -9,16 +9,17 @@ import numpy as np
 import pytest
 
 import agentface
-from agentface import AgentFaceError, EmotionState, Face, FacePose, load_model
+from agentface import AgentFaceError, EmotionState, Face, FacePose
 from agentface.errors import InvalidValueError, UnknownNameError
 from agentface.motion.clock import ManualClock
+from tests.heads import head_model
 
 KEYS = ["face", "emotion", "shown", "speech", "gaze_deg", "frame_ms", "messages", "errors"]
 
 
 @pytest.fixture(scope="module")
 def model():
-    return load_model()
+    return head_model()
 
 
 @pytest.fixture

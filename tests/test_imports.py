@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Iterator
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -42,12 +43,17 @@ OWNERS = {
     "pythonosc": {"io"},
     "av": {"io"},
     "defusedxml": {"io"},
-    "PIL": {"io", "figures"},
+    "PIL": {"io", "view", "figures"},
 }
 
 
-def imports() -> Iterator[tuple[str, str, str]]:
+@cache
+def imports() -> list[tuple[str, str, str]]:
     """Every import at any depth as (part, imported module, file:line); the package's own __init__ re-exports."""
+    return list(_imports())
+
+
+def _imports() -> Iterator[tuple[str, str, str]]:
     for path in PACKAGE.rglob("*.py"):
         part = path.relative_to(PACKAGE).parts[0].removesuffix(".py")
         if part == "__init__":

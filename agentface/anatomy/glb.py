@@ -23,6 +23,7 @@ _CODES = {np.dtype(kind): code for code, kind in _COMPONENTS.items()}
 _WIDTHS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4}
 _TYPES = {width: name for name, width in _WIDTHS.items()}
 _LARGEST = 64 * 1024 * 1024
+_LARGEST_STRIDE = 252
 _HEADER = 20
 
 
@@ -74,6 +75,16 @@ class _Reader:
         self.document: dict[str, Any] = json.loads(content[_HEADER : _HEADER + length])
         self.blob = content[_HEADER + length + 8 :]
 
+    def rows(self, index: int, offset: int, kind: np.dtype[Any], shape: tuple[int, int]) -> Array:
+        """``shape`` components of a view whose rows may be interleaved with others, or padded to four bytes."""
+        view, size = self.document["bufferViews"][index], shape[1] * kind.itemsize
+        stride, start = view.get("byteStride", size), view.get("byteOffset", 0) + offset
+        if stride == size:
+            return self.view(index, offset, kind, shape[0] * shape[1]).reshape(shape)
+        if not size < stride <= _LARGEST_STRIDE or not 0 <= start <= len(self.blob) - stride * (shape[0] - 1) - size:
+            raise ValueError(f"{shape[0]} rows of {stride} bytes in a view of fewer")
+        return np.ndarray(shape, kind, self.blob, start, (stride, kind.itemsize)).copy()
+
     def view(self, index: int, offset: int, kind: np.dtype[Any], count: int) -> Array:
         start = self.document["bufferViews"][index].get("byteOffset", 0)
         return np.frombuffer(self.blob, kind, count, start + offset)
@@ -81,8 +92,8 @@ class _Reader:
     def accessor(self, index: int) -> Array:
         row = self.document["accessors"][index]
         width, kind = _WIDTHS[row["type"]], np.dtype(_COMPONENTS[row["componentType"]])
-        flat = self.view(row["bufferView"], row.get("byteOffset", 0), kind, row["count"] * width)
-        return flat.reshape(row["count"], width) if width > 1 else flat
+        found = self.rows(row["bufferView"], row.get("byteOffset", 0), kind, (row["count"], width))
+        return found if width > 1 else found[:, 0]
 
     def shape(self, index: int) -> Shape:
         sparse = self.document["accessors"][index]["sparse"]
@@ -104,6 +115,14 @@ class _Reader:
         )
 
 
+def texture_coordinates(mesh: MeshArrays) -> Floats | None:
+    """The mesh's TEXCOORD_0 as float32, None where it has none; glTF's whole numbers stand for 0..1."""
+    found = mesh.attributes.get("TEXCOORD_0")
+    if found is None or found.dtype == np.float32:
+        return found
+    return found.astype(np.float32) / np.float32(np.iinfo(found.dtype).max)
+
+
 def write_glb(path: Path, meshes: dict[str, MeshArrays], copyright_line: str) -> None:
     """Write meshes as one GLB file, morph targets as sparse accessors."""
     import pygltflib as gl
@@ -121,7 +140,7 @@ def write_glb(path: Path, meshes: dict[str, MeshArrays], copyright_line: str) ->
         width = 1 if array.ndim == 1 else array.shape[1]
         row = gl.Accessor(
             bufferView=put(array), componentType=_CODES[array.dtype], count=len(array), type=_TYPES[width],
-            normalized=array.dtype == np.uint8 and width == 4,
+            normalized=array.dtype in (np.uint8, np.uint16) and width > 1,
         )  # fmt: skip
         if bounds:
             row.min, row.max = array.min(0).tolist(), array.max(0).tolist()

@@ -10,12 +10,13 @@ from typing import Annotated
 import numpy as np
 from pydantic import AfterValidator, Field
 
-from agentface.anatomy.glb import MeshArrays, Shape, read_glb
+from agentface.anatomy.glb import MeshArrays, Shape, read_glb, texture_coordinates
 from agentface.anatomy.landmarks import Landmarks, load_landmarks
 from agentface.anatomy.muscle_set import MuscleSet
 from agentface.anatomy.muscles import MusclesFile, place_muscles, read_muscles
 from agentface.anatomy.regions import Regions, load_regions
 from agentface.anatomy.rings import EyelidsFile, LipsFile, load_rings
+from agentface.anatomy.unwrap import unwrap, unwrap_centre, unwrap_cover
 from agentface.anatomy.wrinkles import PlacedTrain, WrinklesFile, place_trains, read_wrinkles
 from agentface.config import Table, load
 from agentface.conventions import SIDES, Floats, Indices
@@ -79,6 +80,7 @@ class HeadModel:
         eyes, jaw, lips, eyelids: the tables of the same names.
         muscles_file: the table of the vector muscles.
         wrinkles_file: the table of the trains of wrinkles that follow no single vector muscle.
+        own_uv: ``(V, 2)`` float32 0..1, the texture coordinates that the file has, or None.
     """
 
     name: str
@@ -99,6 +101,7 @@ class HeadModel:
     eyelids: EyelidsFile
     muscles_file: MusclesFile
     wrinkles_file: WrinklesFile
+    own_uv: Floats | None
 
     @cached_property
     def muscles(self) -> MuscleSet:
@@ -111,6 +114,23 @@ class HeadModel:
         smooth = 1.0 - np.clip(2.0 * self.material[:, :3].max(axis=1), 0.0, 1.0)
         return place_trains(self.muscles, self.muscles_file, self.wrinkles_file, self.landmarks, self.regions,
                             self.vertices, self.triangles, smooth)  # fmt: skip
+
+    @cached_property
+    def uv(self) -> Floats:
+        """``(V, 2)`` float32 0..1: texture coordinates, u to the right and v down from the picture's top, as in glTF.
+
+        Those of the file (TEXCOORD_0) where it has any; otherwise ``anatomy/unwrap.py`` makes some.
+        """
+        if self.own_uv is not None:
+            return self.own_uv
+        return unwrap(self.vertices, unwrap_centre(self.landmarks))
+
+    @cached_property
+    def uv_cover(self) -> Floats:
+        """``(V,)`` float32 0..1: how much of a picture at ``uv`` shows; 0 at the back of a head that was unwrapped."""
+        if self.own_uv is not None:
+            return np.ones(len(self.vertices), np.float32)
+        return unwrap_cover(self.vertices, unwrap_centre(self.landmarks))
 
     def eye_centre(self, side: str) -> Floats:
         """The centre ``(3,)`` m of the eyeball of side ``l`` or ``r``."""
@@ -147,6 +167,7 @@ def load_model(face: str | Path = DEFAULT_FACE, muscles: MusclesFile | None = No
         eyelids=load_rings(folder / "eyelids.yaml", EyelidsFile, skin),
         muscles_file=muscles or read_muscles(folder / "muscles.yaml"),
         wrinkles_file=read_wrinkles(folder / "wrinkles.yaml"),
+        own_uv=texture_coordinates(skin),
     )
 
 
@@ -172,6 +193,21 @@ def _checked_skin(path: Path, meshes: dict[str, MeshArrays]) -> MeshArrays:
     if "skin" in meshes:
         missing = {"_MATERIAL", "_SHADE", "_JAW", "_MIRROR"} - meshes["skin"].attributes.keys()
         faults += [Fault(path, None, f"skin.{name}", "this vertex attribute", "none") for name in sorted(missing)]
+        faults += _uv_faults(path, meshes["skin"])
     if faults:
         raise DataError(faults)
     return meshes["skin"]
+
+
+def _uv_faults(path: Path, skin: MeshArrays) -> list[Fault]:
+    uv = texture_coordinates(skin)
+    if uv is None:
+        return []
+    expected = (len(skin.attributes.get("POSITION", ())), 2)
+    if uv.shape != expected:
+        return [Fault(path, None, "skin.TEXCOORD_0", f"an array of shape {expected}", f"{uv.shape}")]
+    wrong = np.flatnonzero(~((uv >= 0.0) & (uv <= 1.0)).all(axis=1))
+    if len(wrong):
+        got = f"{uv[wrong[0]].tolist()} at vertex {wrong[0]}"
+        return [Fault(path, None, "skin.TEXCOORD_0", "coordinates in 0..1", got)]
+    return []

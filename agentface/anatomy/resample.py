@@ -116,6 +116,7 @@ def _build(model: HeadModel, parents: Any, owners: Any, triangles: Any, mirror: 
         "material": _mean(model.material, parents),
         "shade": _mean(model.shade, parents),
         "jaw_weights": _mean(model.jaw_weights, parents),
+        "own_uv": None if model.own_uv is None else _mean(model.own_uv, parents),
         "shapes": {name: _shape(shape, parents, len(model.vertices)) for name, shape in model.shapes.items()},
         "regions": replace(model.regions, region_of=model.regions.region_of[owners], ranges=ranges),
         "lips": _lips(model.lips, new_of_old),

@@ -70,7 +70,9 @@ class _Edges:
     def joined(self, half: list[int]) -> list[bool]:
         """Whether each vertex but the last is joined to the next."""
         vertices = np.array(half, np.int64)
-        joined: list[bool] = np.isin(vertices[:-1] * self.count + vertices[1:], self._keys).tolist()
+        keys = vertices[:-1] * self.count + vertices[1:]
+        nearest = np.searchsorted(self._keys, keys).clip(max=len(self._keys) - 1)
+        joined: list[bool] = (self._keys[nearest] == keys).tolist()
         return joined
 
 

@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 import math
-import signal
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager, suppress
+from collections.abc import Callable
+from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
 from click.core import ParameterSource
 
+from agentface.commands.film import Film, terminated_as_interrupted
 from agentface.commands.options import (
     camera_option,
     face_options,
@@ -25,8 +25,6 @@ from agentface.errors import DataError, Fault, GraphicsError
 if TYPE_CHECKING:
     from agentface.emotion.score import Score
     from agentface.face import Face
-    from agentface.io.sequence import SequenceWriter
-    from agentface.io.video import VideoWriter
 
 _STOPPED = 130
 """The exit code of a command that Ctrl-C stopped."""
@@ -78,9 +76,9 @@ def play(
         raise click.UsageError("--loop goes without -o")
     score = _score(document)
     shown = make_face(face, deformer, look=look)
-    with _terminated_as_interrupted():
+    with terminated_as_interrupted():
         if output is not None:
-            _film(shown, score, output, size, camera, quality, fps)
+            _film(shown, score, Film(output, size, camera, quality, fps))
             return
         shown.warm_up()
         try:
@@ -136,51 +134,17 @@ def _show(face: Face, score: Score, look: str | None, camera: str, quality: str,
         window.run(each_frame)
 
 
-def _film(face: Face, score: Score, path: Path, size: tuple[int, int], camera: str, quality: str, fps: float) -> None:
-    frames = math.ceil(score.length_s * fps - 1e-6)
+def _film(face: Face, score: Score, film: Film) -> None:
+    frames = math.ceil(score.length_s * film.fps - 1e-6)
     follow, time_s = _follower(face, score), 0.0
     try:
-        with _open_film(path, size, fps) as film, _progress(path, frames) as advance:
+        with film.open(face, (frames - 1) / film.fps) as draw:
             for frame in range(frames):
                 if frame:
-                    face.step(1.0 / fps)
-                time_s = frame / fps
+                    face.step(1.0 / film.fps)
+                time_s = frame / film.fps
                 follow(time_s)
-                film.add(face.render(size, camera, quality, alpha=path.suffix.lower() == ".png"), time_s)
-                advance(frame + 1)
+                draw(None, time_s)
     except KeyboardInterrupt:
-        click.echo(f"{path}: stopped at {time_s:.1f} s of {score.length_s:.1f} s", err=True)
+        click.echo(f"{film.path}: stopped at {time_s:.1f} s of {score.length_s:.1f} s", err=True)
         raise SystemExit(_STOPPED) from None
-
-
-def _open_film(path: Path, size: tuple[int, int], fps: float) -> VideoWriter | SequenceWriter:
-    if path.suffix.lower() == ".png":
-        from agentface.io.sequence import SequenceWriter
-
-        return SequenceWriter(path, size, fps)
-    from agentface.io.video import VideoWriter
-
-    return VideoWriter(path, size, fps)
-
-
-@contextmanager
-def _progress(path: Path, frames: int) -> Iterator[Callable[[int], None]]:
-    from rich.console import Console
-    from rich.progress import Progress
-
-    console = Console(stderr=True)
-    if not console.is_terminal:
-        yield lambda _: None
-        return
-    with Progress(console=console) as progress:  # rich's own columns end with the time left
-        task = progress.add_task(path.name, total=frames)
-        yield lambda done: progress.update(task, completed=done)
-
-
-@contextmanager
-def _terminated_as_interrupted() -> Iterator[None]:
-    before = signal.signal(signal.SIGTERM, signal.default_int_handler)
-    try:
-        yield
-    finally:
-        signal.signal(signal.SIGTERM, before)

@@ -5,17 +5,19 @@ from __future__ import annotations
 import math
 import signal
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager, suppress
+from contextlib import AbstractContextManager, contextmanager, nullcontext, suppress
 from pathlib import Path
 from threading import Event
 from typing import TYPE_CHECKING
 
 import click
 
+from agentface.commands.film import Film, terminated_as_interrupted
 from agentface.commands.options import (
     address,
     camera_option,
     face_options,
+    look_option,
     make_face,
     quality_option,
     size_option,
@@ -23,10 +25,9 @@ from agentface.commands.options import (
 
 if TYPE_CHECKING:
     from agentface.face import Face
-    from agentface.io.sequence import SequenceWriter
-    from agentface.io.video import VideoWriter
     from agentface.parameters import FacePose
 
+_OnFrame = Callable[[float], None]
 _RECORD = "Film the face; a name like face-%05d.png gives numbered transparent pictures instead."
 
 
@@ -43,6 +44,7 @@ _RECORD = "Film the face; a name like face-%05d.png gives numbered transparent p
 )
 @click.option("--duration", type=click.FloatRange(min=0, min_open=True), metavar="S", help="Stop after S seconds.")
 @click.option("--fps", type=click.FloatRange(1, 240), default=None, help="Frames a second: 60, or 30 when recording.")
+@look_option
 @size_option
 @quality_option
 @camera_option
@@ -55,6 +57,7 @@ def serve(
     every_frame: bool,
     duration: float | None,
     fps: float | None,
+    look: str | None,
     size: tuple[int, int],
     quality: str,
     camera: str,
@@ -69,18 +72,25 @@ def serve(
         raise click.UsageError("--record, --duration and --fps go with --view none")
     if every_frame and not record:
         raise click.UsageError("--every-frame goes with --record")
+    if look and view == "none" and not record:
+        raise click.UsageError("--look goes with --view window or --record")
     from agentface.io.osc.server import OscServer
 
-    shown = make_face(face, deformer)
+    shown = make_face(face, deformer, look=look)
     shown.warm_up()
     with OscServer(shown, *osc) as server:
         place = f"{server.host}:{server.port}"
         if view == "window":
-            _open_window(shown, place)
+            _open_window(shown, place, look)
             return
         rate = fps or (30.0 if record else 60.0)
-        film = _film_later if every_frame else _film
-        with film(shown, record, size, camera, quality, rate, duration) as on_frame, _until_told() as stop:
+        film = Film(record, size, camera, quality, rate) if record else None
+        # told to stop while it draws what it has noted, it keeps what is drawn
+        with (
+            terminated_as_interrupted(),
+            _filming(shown, film, duration, every_frame) as on_frame,
+            _until_told() as stop,
+        ):
             from agentface.io.live import run_live
             from agentface.motion.clock import SystemClock
 
@@ -92,79 +102,40 @@ def _announce(face: Face, place: str) -> None:
     click.echo(f"{face.model.name} listens to OSC on {place}")
 
 
-def _open_window(face: Face, place: str) -> None:
+def _open_window(face: Face, place: str, look: str | None) -> None:
     from agentface.commands.show import make_window
 
-    window = make_window(face)
+    window = make_window(face, look=look)
     _announce(face, place)
-    signal.signal(signal.SIGTERM, signal.default_int_handler)
-    with suppress(KeyboardInterrupt):
+    with terminated_as_interrupted(), suppress(KeyboardInterrupt):
         window.run()
 
 
-@contextmanager
-def _film(
-    face: Face, path: Path | None, size: tuple[int, int], camera: str, quality: str, fps: float, duration: float | None
-) -> Iterator[Callable[[float], None]]:
-    if path is None:
-        yield lambda _: None
-        return
-    with _writer(face, path, size, camera, quality, fps, duration) as draw:
-        face.render(size, camera, quality)
-        yield lambda time: draw(time, face.pose)
+def _filming(
+    face: Face, film: Film | None, duration: float | None, every_frame: bool
+) -> AbstractContextManager[_OnFrame]:
+    if film is None:
+        return nullcontext(lambda _: None)
+    return _film_later(face, film) if every_frame else _film_now(face, film, duration)
 
 
 @contextmanager
-def _film_later(
-    face: Face, path: Path | None, size: tuple[int, int], camera: str, quality: str, fps: float, duration: float | None
-) -> Iterator[Callable[[float], None]]:
-    """As :func:`_film`, but drawn after the end: a slow machine films as smoothly as a fast one."""
-    del duration
-    assert path is not None, "every-frame goes with a file"  # noqa: S101 - checked above, said to the type checker
-    with _film(face, path, size, camera, quality, fps, None):
+def _film_now(face: Face, film: Film, duration: float | None) -> Iterator[_OnFrame]:
+    with film.open(face, duration) as draw:
+        face.render(film.size, film.camera, film.quality)
+        yield lambda time_s: draw(None, time_s)
+
+
+@contextmanager
+def _film_later(face: Face, film: Film) -> Iterator[_OnFrame]:
+    """As :func:`_film_now`, but drawn after the end: a slow machine films as smoothly as a fast one."""
+    with _film_now(face, film, None):
         pass  # what cannot be written or drawn is told before the recording
-    noted: list[tuple[float, FacePose]] = []
-    yield lambda time: noted.append((time, face.pose))
-    with _writer(face, path, size, camera, quality, fps, noted[-1][0] if noted else None) as draw:
-        for time, pose in noted:
-            draw(time, pose)
-
-
-@contextmanager
-def _writer(
-    face: Face, path: Path, size: tuple[int, int], camera: str, quality: str, fps: float, duration: float | None
-) -> Iterator[Callable[[float, FacePose], None]]:
-    with _open_film(path, size, fps) as film, _progress(path, duration) as advance:
-
-        def draw(time: float, pose: FacePose) -> None:
-            film.add(face.render(size, camera, quality, pose=pose, alpha=path.suffix.lower() == ".png"), time)
-            advance(time)
-
-        yield draw
-
-
-def _open_film(path: Path, size: tuple[int, int], fps: float) -> VideoWriter | SequenceWriter:
-    if path.suffix.lower() == ".png":
-        from agentface.io.sequence import SequenceWriter
-
-        return SequenceWriter(path, size, fps)
-    from agentface.io.video import VideoWriter
-
-    return VideoWriter(path, size, fps)
-
-
-@contextmanager
-def _progress(path: Path, duration: float | None) -> Iterator[Callable[[float], None]]:
-    from rich.console import Console
-    from rich.progress import Progress
-
-    console = Console(stderr=True)
-    if duration is None or not console.is_terminal:
-        yield lambda _: None
-        return
-    with Progress(console=console) as progress:
-        task = progress.add_task(path.name, total=duration)
-        yield lambda time: progress.update(task, completed=time)
+    noted: list[tuple[FacePose, float]] = []
+    yield lambda time_s: noted.append((face.pose, time_s))
+    with film.open(face, noted[-1][1] if noted else None) as draw:
+        for pose, time_s in noted:
+            draw(pose, time_s)
 
 
 @contextmanager

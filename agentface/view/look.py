@@ -9,7 +9,7 @@ from pydantic import Field
 
 from agentface.anatomy.model import HeadModel
 from agentface.config import Document, Table
-from agentface.errors import UnknownNameError
+from agentface.errors import DataError, UnknownNameError
 
 _Fraction = Annotated[float, Field(ge=0, le=1)]
 _Colour = Annotated[list[_Fraction], Field(min_length=3, max_length=3)]
@@ -17,11 +17,17 @@ _Direction = Annotated[list[float], Field(min_length=3, max_length=3)]
 
 
 class SkinLook(Table):
-    """Reflectance of the skin, the colour that tints the lips, how much it shines (1: as glossy skin)."""
+    """Reflectance of the skin, the colour that tints the lips, how much it shines (1: as glossy skin).
+
+    ``texture`` is the file of a picture to wear as skin (8-bit sRGB; where it is transparent the skin shows through),
+    relative to the look's own; a look that was read has its whole path. ``texture_strength`` is how much of it shows.
+    """
 
     tone: _Colour
     lips: _Colour
     shine: _Fraction
+    texture: str | None = None
+    texture_strength: _Fraction = 1.0
 
 
 class EyesLook(Table):
@@ -106,7 +112,7 @@ def _looks(model: HeadModel) -> Path:
 
 
 def read_look(path: Path) -> Look:
-    """The look in a file; raises DataError with every fault of the file."""
+    """The look in a file; raises DataError with every fault of the file and of the picture it wears as skin."""
     document = Document(path)
     look = document.collect(Look)
     if look is not None:
@@ -114,6 +120,22 @@ def read_look(path: Path) -> Look:
             towards = getattr(look.lights, name).towards
             if not any(towards):
                 document.fault(("lights", name, "towards"), "a direction", repr(towards))
+        look = _with_texture(document, look)
     document.check()
     assert look is not None, "a document without faults is parsed"  # noqa: S101 - for the type checker
     return look
+
+
+def _with_texture(document: Document, look: Look) -> Look:
+    """``look`` with the path that its texture lies at; the faults of the picture are the document's."""
+    if look.skin.texture is None:
+        return look
+    from agentface.view.skin_image import read_texture
+
+    path = document.path.parent / look.skin.texture
+    try:
+        read_texture(path)
+    except DataError as error:
+        for fault in error.faults:
+            document.fault(("skin", "texture"), f"{fault.expected} at {path}", fault.got, fault.hint)
+    return look.model_copy(update={"skin": look.skin.model_copy(update={"texture": str(path)})})

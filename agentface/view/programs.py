@@ -9,10 +9,10 @@ from agentface.view.look import Look
 from agentface.view.tiers import TIERS
 
 FRAME_BINDING = 0
-_SLOTS = {"skin_fields": 0, "picture": 0, "noise_volume": 1, "key_depth": 2, "wrinkle_atlas": 3}
+_SLOTS = {"skin_fields": 0, "picture": 0, "noise_volume": 1, "key_depth": 2, "wrinkle_atlas": 3, "skin_picture": 4}
 _SHADERS = {
     "part": ("part", "part"),
-    "cloth": ("part", "cloth"),
+    "cloth": ("cloth", "cloth"),
     "eye": ("eye", "eye"),
     "ribbon": ("ribbon", "ribbon"),
     "strand": ("strand", "strand"),
@@ -24,15 +24,19 @@ _SHADERS = {
 
 
 class Programs:
-    """Programs by name; a skin's has the names of its shaders, and ``-wrinkled`` behind them where it is."""
+    """Programs by name; a skin's has the names of its shaders, and ``-wrinkled`` behind them where it is.
 
-    def __init__(self, context: Any) -> None:
+    ``textured``: skins wear a picture.
+    """
+
+    def __init__(self, context: Any, *, textured: bool = False) -> None:
         self._context = context
         self._programs = {name: self._compile(*shaders) for name, shaders in _SHADERS.items()}
         self.depth = self._compile("depth", None)
         for tier in TIERS.values():
-            self._programs[tier.skin] = self._compile(tier.skin, tier.skin)
-            self._programs[f"{tier.skin}-wrinkled"] = self._compile(tier.skin, tier.skin, ("WRINKLED",))
+            worn = ("TEXTURED",) if textured else ()
+            self._programs[tier.skin] = self._compile(tier.skin, tier.skin, worn)
+            self._programs[f"{tier.skin}-wrinkled"] = self._compile(tier.skin, tier.skin, (*worn, "WRINKLED"))
 
     def __getitem__(self, name: str) -> Any:
         return self._programs[name]

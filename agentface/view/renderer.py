@@ -13,7 +13,7 @@ from agentface.view.anchored import AnchoredArray, eye_linings
 from agentface.view.brows import BrowLine, brow_hairs, lash_hairs
 from agentface.view.camera import Camera, named_view
 from agentface.view.context import Witness, make_current, open_context, shader_names
-from agentface.view.frame import pack_frame, pixels_a_metre, shadow_projection
+from agentface.view.frame import pack_frame, pixels_a_metre, shadow_projection, unit
 from agentface.view.hair import Hairline, hidden
 from agentface.view.head_hair import HeadHair
 from agentface.view.lips import FineLips
@@ -27,6 +27,7 @@ from agentface.view.ribbons import HairArray
 from agentface.view.shadow import KeyShadow
 from agentface.view.shirt import shirt
 from agentface.view.skin import Skin, SkinFields, SkinMeshes
+from agentface.view.skin_image import skin_texture
 from agentface.view.targets import Targets, checked_size
 from agentface.view.tiers import tier_named
 from agentface.view.wrinkles import WrinkleAtlas
@@ -61,14 +62,17 @@ class Renderer:
         self._frame = self.context.buffer(reserve=_FRAME_BYTES)
         rng = np.random.default_rng(_SEED)
         self._noise = self.context.texture3d((SIDE,) * 3, 4, noise_volume(rng).tobytes())
-        self._programs = Programs(self.context)
+        self._picture = skin_texture(self.context, self.look)
+        self._programs = Programs(self.context, textured=self._picture is not None)
         self._screens = {name: self.context.vertex_array(self._programs[name], []) for name in ("background", "copy")}
         lips = FineLips(model, _LIP_CUTS)
         self._fields = SkinFields(self.context, model, lips)
-        self._wrinkles = WrinkleAtlas(self.context, model)
+        self._wrinkles = WrinkleAtlas(self.context, model, unit(self.look.lights.key.towards), rng)
         normals = vertex_normals(model.vertices, model.triangles)
         self._shadow = KeyShadow(self.context, self._programs.depth, model)
-        self._meshes = SkinMeshes(self.context, model, lips, self._covered(), self._lit_at_rest(normals))
+        self._meshes = SkinMeshes(
+            self.context, model, lips, self._covered(), self._lit_at_rest(normals), textured=self._picture is not None
+        )
         self._skins: dict[tuple[str, int], Skin] = {}
         self._mouth = Mouth(self.context, self._programs["part"], model)
         self._eyes = [Eyeball(self.context, self._programs["eye"], model, side) for side in SIDES]
@@ -138,6 +142,8 @@ class Renderer:
         self._fields.texture.use(0)
         self._noise.use(1)
         self._wrinkles.texture.use(3)
+        if self._picture is not None:
+            self._picture.use(4)
         if tier.fine:
             self._fields.update_lips(geometry)
             self._shadow.draw()

@@ -61,7 +61,9 @@ class SkinFields:
 class SkinMeshes:
     """The skin's static buffers, as it is and finer; drawn where ``SkinFields`` has it."""
 
-    def __init__(self, context: Any, model: HeadModel, lips: FineLips, covered: Floats, lit: Floats) -> None:
+    def __init__(
+        self, context: Any, model: HeadModel, lips: FineLips, covered: Floats, lit: Floats, *, textured: bool
+    ) -> None:
         self._context, self._model, self._lips = context, model, lips
         self._triangles = uncovered(model)
         normals = vertex_normals(model.vertices, model.triangles)
@@ -74,6 +76,8 @@ class SkinMeshes:
             ("ambient", model.shade[:, :1]),
             ("lit_at_rest", lit),
         )
+        if textured:
+            fields += (("picture", np.column_stack([model.uv, model.uv_cover])),)
         self._fields = [(name, field, lips.extended(field)) for name, field in fields]
 
     def coarse(self, programs: tuple[Any, Any]) -> Skin:

@@ -1,4 +1,4 @@
-"""Wrinkles finer than the mesh: an atlas of the face with every train's height, combined once a frame."""
+"""Wrinkles finer than the mesh: an atlas of the face with every train's relief, combined once a frame."""
 
 from __future__ import annotations
 
@@ -11,68 +11,149 @@ import numpy.typing as npt
 from agentface.anatomy.model import HeadModel
 from agentface.anatomy.trains import relief
 from agentface.anatomy.wrinkles import PlacedTrain
-from agentface.conventions import Floats, Indices
+from agentface.conventions import Bytes, Doubles, Floats, Indices
 from agentface.view.context import compile_program
+from agentface.view.refine import vertex_normals
 
 SIDE = 512
+STEEPEST = 2.0
+"""The slope whose root is 1, as in ``shaders/wrinkles.glsl``."""
 _BELOW, _ABOVE = 0.35, 0.3  # eye separations beyond chin and hairline
 _LOWEST = 2e-6  # m
+_AZIMUTH = 1.35  # rad, to both sides of the middle: ATLAS_AZIMUTH of shaders/atlas.glsl
+_CREASE_SHADE = 0.5  # of the light that the bottom of a crease misses: CREASE_SHADE there
 _FAR_ROUND = 2.2  # rad; triangles beyond would cross the atlas where the azimuth jumps
+_GRAIN = 0.06  # of the light
+_GAMMA = 0.48  # from light to the picture, about
+_FLIPPED = np.array([-1, 1, 1], np.float32)
+_BORDER = 40  # texels over which the grain ends
 
 
 @dataclass(frozen=True, slots=True)
 class Patch:
-    """One train on the atlas: the rows and columns it covers, and ``(h, w, 2)`` heights in metres and creases 0..1."""
+    """One train on the atlas at full contraction.
+
+    Attributes:
+        rows, columns: what it covers, ``h`` by ``w`` texels.
+        heights: ``(h, w)`` m.
+        slopes: ``(h, w, 2)`` signed roots of the slopes to the face's left and up, as parts of the steepest.
+        creases: ``(h, w)`` 0..1.
+        normals: ``(h, w, 3)`` of the smooth skin.
+    """
 
     rows: slice
     columns: slice
-    texels: Floats
+    heights: Floats
+    slopes: Floats
+    creases: Floats
+    normals: Floats
 
     def mirrored(self) -> Patch:
         """The same train of the other side."""
         columns = slice(SIDE - self.columns.stop, SIDE - self.columns.start)
-        return Patch(self.rows, columns, np.ascontiguousarray(self.texels[:, ::-1]))
+        heights, slopes, creases, normals = (
+            np.ascontiguousarray(image[:, ::-1]) for image in (self.heights, self.slopes, self.creases, self.normals)
+        )
+        return Patch(self.rows, columns, heights, slopes * _FLIPPED[:2], creases, normals * _FLIPPED)
+
+    def shade(self, towards: Doubles) -> Floats:
+        """``(h, w)``: by how much its slopes change wrapped light from a direction, as a part of that light."""
+        azimuth = _azimuths()[self.columns]
+        slope = STEEPEST * self.slopes * np.abs(self.slopes)
+        along = np.cos(azimuth) * towards[0] - np.sin(azimuth) * towards[2]
+        leftward = np.cos(azimuth) * self.normals[..., 0] - np.sin(azimuth) * self.normals[..., 2]
+        facing = self.normals @ towards
+        risen = slope[..., 0] * (along - leftward * facing) + slope[..., 1] * (
+            towards[1] - self.normals[..., 1] * facing
+        )
+        return np.asarray(-risen / (np.maximum(facing, -0.2) + 0.8), np.float32)
 
 
 class WrinkleAtlas:
-    """The texture ``wrinkle_atlas`` of ``shaders/wrinkles.glsl``: heights in metres and creases."""
+    """The texture ``wrinkle_atlas`` of ``shaders/wrinkles.glsl``.
 
-    def __init__(self, context: Any, model: HeadModel) -> None:
+    ``heights (S, S)`` are those of the frame in metres, ``relief (S, S, 4)`` its slopes, the change of the key light
+    and the creases.
+
+    Args:
+        towards_key: ``(3,)`` unit vector to the key light, as the face at rest sees it.
+        rng: draws the skin's grain.
+    """
+
+    def __init__(self, context: Any, model: HeadModel, towards_key: Doubles, rng: np.random.Generator) -> None:
         at = model.landmarks
         self.height = (
             float(at["menton"][1]) - _BELOW * at.eye_separation,
             float(at["hairline_middle"][1]) + _ABOVE * at.eye_separation,
         )
-        self.patches = _patches(model, *_layers(context, model, self.height))
-        self.texels = np.zeros((SIDE, SIDE, 2), np.float32)
+        self.patches = _patches(model, *_layers(context, model, self.height), self.height)
+        self._reliefs = [
+            np.concatenate([patch.slopes, patch.shade(towards_key)[..., None]], axis=2) for patch in self.patches
+        ]
+        self.heights = np.zeros((SIDE, SIDE), np.float32)
+        self.relief = np.zeros((SIDE, SIDE, 4), np.float32)
+        self._grain = _grain(rng)
         self._levels = np.zeros(len(self.patches), np.float32)
-        self._dirty: tuple[int, int] | None = None
-        self.texture = context.texture((SIDE, SIDE), 2, self.texels.tobytes(), dtype="f4")
+        self._dirty = (SIDE, 0)
+        self.texture = context.texture((SIDE, SIDE), 4, self._texels(slice(0, SIDE)).tobytes())
         self.texture.filter = (context.LINEAR, context.LINEAR)
         self.texture.repeat_x = self.texture.repeat_y = False
 
     def update(self, levels: Floats) -> bool:
         """Combine the trains at ``levels (K,)`` and upload them; false when nothing has risen."""
-        if len(levels) != len(self.patches) or not levels.any():
-            return False
+        if len(levels) != len(self.patches):
+            levels = np.zeros(len(self.patches), np.float32)
         if not np.array_equal(levels, self._levels):
             self._levels[:] = levels
             self._combine()
-        return True
+        return bool(levels.any())
 
     def _combine(self) -> None:
-        risen = [(patch, level) for patch, level in zip(self.patches, self._levels, strict=True) if level > 0.0]
-        low = min(patch.rows.start for patch, _ in risen)
-        high = max(patch.rows.stop for patch, _ in risen)
-        if self._dirty is not None:
-            low, high = min(low, self._dirty[0]), max(high, self._dirty[1])
-        self.texels[low:high] = 0.0
-        for patch, level in risen:
-            part = self.texels[patch.rows, patch.columns]
-            np.maximum(part, level * patch.texels, out=part)
-        if low < high:
-            self.texture.write(self.texels[low:high], viewport=(0, low, SIDE, high - low))
-        self._dirty = (min(patch.rows.start for patch, _ in risen), max(patch.rows.stop for patch, _ in risen))
+        risen = np.flatnonzero(self._levels > 0.0)
+        low = min((self.patches[i].rows.start for i in risen), default=SIDE)
+        high = max((self.patches[i].rows.stop for i in risen), default=0)
+        rows = slice(min(low, self._dirty[0]), max(high, self._dirty[1]))
+        self._dirty = low, high
+        self.heights[rows] = 0.0
+        self.relief[rows] = 0.0
+        for i in risen:
+            self._raise(self.patches[i], self._reliefs[i], self._levels[i])
+        if rows.start < rows.stop:
+            self.texture.write(self._texels(rows).tobytes(), viewport=(0, rows.start, SIDE, rows.stop - rows.start))
+
+    def _raise(self, patch: Patch, relief: Floats, level: np.float32) -> None:
+        """Let the higher of two trains stand, with the darker of their creases."""
+        box = patch.rows, patch.columns
+        heights, here = level * patch.heights, self.relief[box]
+        root = np.sqrt(level)
+        scaled = relief * np.array([root, root, level], np.float32)
+        np.copyto(here[..., :3], scaled, where=(heights > self.heights[box])[..., None])
+        np.maximum(self.heights[box], heights, out=self.heights[box])
+        np.maximum(here[..., 3], level * patch.creases, out=here[..., 3])
+
+    def _texels(self, rows: slice) -> Bytes:
+        """``(h, S, 4)`` bytes: slopes about 127.5, crease, half of what it makes of the picture."""
+        relief = self.relief[rows]
+        texels = np.empty_like(relief)
+        texels[..., :2] = 0.5 + 0.5 * relief[..., :2]
+        texels[..., 2] = relief[..., 3]
+        light = (1.0 + relief[..., 2]) * (1.0 - _CREASE_SHADE * relief[..., 3]) * (1.0 + self._grain[rows])
+        texels[..., 3] = 0.5 * np.maximum(light, 0.0) ** _GAMMA
+        return np.clip(255.0 * texels + 0.5, 0, 255).astype(np.uint8)
+
+
+def _azimuths() -> Doubles:
+    """``(S,)`` rad, of the atlas' columns."""
+    return np.asarray(_AZIMUTH * (2.0 * (np.arange(SIDE) + 0.5) / SIDE - 1.0))
+
+
+def _grain(rng: np.random.Generator) -> Floats:
+    """``(S, S)``: how uneven the skin is, a part of its light; even where the atlas ends."""
+    noise = rng.uniform(-1.0, 1.0, (SIDE, SIDE))
+    for _ in range(2):
+        noise = (0.5 * noise + 0.25 * np.roll(noise, 1, axis=0) + 0.25 * np.roll(noise, -1, axis=0)).T
+    inside = np.clip(np.minimum(np.arange(SIDE), np.arange(SIDE)[::-1]) / _BORDER, 0.0, 1.0)
+    return np.asarray(_GRAIN * noise * inside * inside[:, None], np.float32)
 
 
 def _layers(context: Any, model: HeadModel, height: tuple[float, float]) -> tuple[Indices, Floats]:
@@ -96,11 +177,12 @@ def _layers(context: Any, model: HeadModel, height: tuple[float, float]) -> tupl
     return triangle, shares
 
 
-def _patches(model: HeadModel, triangle: Indices, shares: Floats) -> list[Patch]:
+def _patches(model: HeadModel, triangle: Indices, shares: Floats, height: tuple[float, float]) -> list[Patch]:
     covered = np.flatnonzero(triangle.ravel() >= 0)
     triangles, shares = triangle.ravel()[covered], shares.reshape(-1, 3)[covered]
     corners = model.triangles[triangles]
     points = np.einsum("nc,ncx->nx", shares, model.vertices[corners])
+    normals = np.einsum("nc,ncx->nx", shares, vertex_normals(model.vertices, model.triangles)[corners])
     patches: list[Patch] = []
     for placed in model.trains:
         if placed.name.endswith("_r"):  # the atlas is its own mirror image, and the left train comes first
@@ -108,9 +190,10 @@ def _patches(model: HeadModel, triangle: Indices, shares: Floats) -> list[Patch]
             continue
         near = np.flatnonzero(_touched(model, placed)[triangles])
         reach = (shares[near] * placed.reach[corners[near]]).sum(axis=1)
-        texels = reach[:, None] * np.stack(relief(placed.train, points[near]), axis=1)
-        kept = texels[:, 0] > _LOWEST
-        patches.append(_patch(covered[near[kept]], texels[kept]))
+        raised = reach[:, None] * np.stack(relief(placed.train, points[near]), axis=1)
+        kept = raised[:, 0] > _LOWEST
+        at = near[kept]
+        patches.append(_patch(covered[at], raised[kept], np.hypot(points[at, 0], points[at, 2]), normals[at], height))
     return patches
 
 
@@ -124,17 +207,28 @@ def _touched(model: HeadModel, placed: PlacedTrain) -> npt.NDArray[np.bool_]:
     return np.asarray(np.isin(model.triangles, beside).any(axis=1))
 
 
-def _patch(where: Any, texels: Any) -> Patch:
+def _patch(where: Any, raised: Any, radius: Doubles, normals: Any, height: tuple[float, float]) -> Patch:
+    """From the texels ``where (N,)`` that are raised: heights and creases ``(N, 2)``, the rest of them."""
     if not len(where):
-        return Patch(slice(0, 0), slice(0, 0), np.zeros((0, 0, 2), np.float32))
+        where, raised, radius, normals = (np.zeros(shape) for shape in (1, (1, 2), 1, (1, 3)))
+        where, radius = where.astype(np.int64), radius + 1.0
     row, column = np.divmod(where, SIDE)
     rows, columns = _around(row), _around(column)
-    image = np.zeros((rows.stop - rows.start, columns.stop - columns.start, 2))
-    image[row - rows.start, column - columns.start] = texels
+    image = np.zeros((rows.stop - rows.start, columns.stop - columns.start, 6))
+    image[..., 2], image[..., 5] = radius.mean(), 1.0
+    image[row - rows.start, column - columns.start] = np.column_stack([raised, radius, normals])
+    relief, around = image[..., :2], image[..., 2]
     for _ in range(2):  # along both axes: a foot as sharp as a texel would show the texels as steps
-        before, after = np.pad(image, [(1, 0), (0, 0), (0, 0)])[:-1], np.pad(image, [(0, 1), (0, 0), (0, 0)])[1:]
-        image = (0.25 * before + 0.5 * image + 0.25 * after).swapaxes(0, 1)
-    return Patch(rows, columns, np.ascontiguousarray(image, np.float32))
+        before, after = np.pad(relief, [(1, 0), (0, 0), (0, 0)])[:-1], np.pad(relief, [(0, 1), (0, 0), (0, 0)])[1:]
+        relief = (0.25 * before + 0.5 * relief + 0.25 * after).swapaxes(0, 1)
+    upward, leftward = np.gradient(relief[..., 0])
+    slopes = (
+        np.stack([leftward / (around * 2 * _AZIMUTH / SIDE), upward / ((height[1] - height[0]) / SIDE)], axis=2)
+        / STEEPEST
+    )
+    roots = np.sign(slopes) * np.sqrt(np.minimum(np.abs(slopes), 1.0))
+    relief, roots, normals = (np.ascontiguousarray(part, np.float32) for part in (relief, roots, image[..., 3:]))
+    return Patch(rows, columns, relief[..., 0], roots, relief[..., 1], normals)
 
 
 def _around(places: Any) -> slice:

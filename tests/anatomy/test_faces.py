@@ -7,9 +7,9 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from agentface.anatomy.model import load_model
 from agentface.anatomy.regions import REGIONS, SUB_REGIONS
 from agentface.resources import face_folder, face_names
+from tests.heads import head_model
 
 FACES = ("amber", "onyx")
 MESHES = {"skin", "teeth_upper", "teeth_lower", "tongue", "eye_l", "eye_r", "lashes"}
@@ -17,7 +17,7 @@ MESHES = {"skin", "teeth_upper", "teeth_lower", "tongue", "eye_l", "eye_r", "las
 
 @pytest.fixture(scope="module", params=FACES)
 def model(request):
-    return load_model(request.param)
+    return head_model(request.param)
 
 
 def triangle_normals(vertices, triangles):
@@ -137,7 +137,7 @@ def test_the_asset_is_read_as_an_independent_reader_reads_it():
     accessor = document.accessors[skin.primitives[0].attributes.POSITION]
     view = document.bufferViews[accessor.bufferView]
     raw = document.binary_blob()[view.byteOffset : view.byteOffset + accessor.count * 12]
-    np.testing.assert_array_equal(np.frombuffer(raw, np.float32).reshape(-1, 3), load_model("amber").vertices)
+    np.testing.assert_array_equal(np.frombuffer(raw, np.float32).reshape(-1, 3), head_model("amber").vertices)
 
 
 def test_the_glb_header_is_right():

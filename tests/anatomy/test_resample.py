@@ -5,15 +5,15 @@ from functools import cache
 import numpy as np
 import pytest
 
-from agentface.anatomy.model import load_model
 from agentface.anatomy.regions import REGIONS, SUB_REGIONS
 from agentface.anatomy.resample import subdivided, thinned
 from agentface.conventions import SIDES
 from agentface.deform.combine import Combiner, parallel
 from agentface.deform.pipeline import GeometricDeformer
 from agentface.parameters import VECTOR_MUSCLES, FacePose
+from tests.heads import head_model
 
-FACES = {face: load_model(face) for face in ("amber", "onyx")}
+FACES = {face: head_model(face) for face in ("amber", "onyx")}
 
 
 POSES = (

@@ -7,13 +7,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from agentface.anatomy.model import load_model
 from agentface.calibration.action_units import load_action_units
 from agentface.calibration.agreement import Agreement, agreement, measure
 from agentface.calibration.calibrate import table
 from agentface.calibration.limits import BEGIN, END, between_marks, missed, with_table
 from agentface.errors import DataError, OutputError
 from agentface.resources import face_names
+from tests.heads import head_model
 
 DOCUMENT = Path(__file__).parents[2] / "docs" / "calibration.md"
 FITTED = {1, 2, 4, 6, 9, 10, 12, 15, 16, 17, 20}
@@ -23,7 +23,7 @@ OTHERS = {5, 7, 18, 22, 23, 24, 25, 26, 27, 28, 43, 45}
 
 @pytest.mark.parametrize("face", face_names())
 def test_every_face_agrees_with_its_artists(face):
-    rows = measure(load_model(face), load_action_units())
+    rows = measure(head_model(face), load_action_units())
     assert rows.keys() == FITTED | OTHERS
     assert np.mean([rows[number].cosine for number in FITTED]) >= 0.85
     for number in OTHERS:
@@ -38,7 +38,7 @@ def test_every_face_agrees_with_its_artists(face):
 
 def test_the_table_in_the_documents_is_what_the_command_would_write():
     written = between_marks(DOCUMENT.read_text(encoding="utf-8")).splitlines()
-    now = table([load_model(face) for face in face_names()]).splitlines()
+    now = table([head_model(face) for face in face_names()]).splitlines()
     assert len(written) == len(now)
     for there, here in zip(written, now, strict=True):
         for old, new in zip(there.split("|"), here.split("|"), strict=True):
@@ -53,7 +53,7 @@ def test_the_table_in_the_documents_is_what_the_command_would_write():
 
 @pytest.fixture(scope="module")
 def amber():
-    return load_model("amber")
+    return head_model("amber")
 
 
 def test_a_shape_agrees_with_itself_and_its_opposite_does_not(amber):

@@ -13,6 +13,7 @@ from agentface.calibration.calibrate import anatomy_file, table
 from agentface.calibration.limits import BEGIN, END
 from agentface.cli import cli
 from agentface.resources import face_folder, face_names
+from tests.heads import head_model
 
 
 def call(*arguments, code=0):
@@ -43,9 +44,9 @@ def quick(monkeypatch):
 
 
 def test_the_table_of_all_faces_or_of_one():
-    assert call("--table").stdout == table([load_model(name) for name in face_names()])
-    assert call("onyx", "--table").stdout == table([load_model("onyx")])
-    assert call("--table", "--face", "onyx", "-o", "-").stdout == table([load_model("onyx")])
+    assert call("--table").stdout == table([head_model(name) for name in face_names()])
+    assert call("onyx", "--table").stdout == table([head_model("onyx")])
+    assert call("--table", "--face", "onyx", "-o", "-").stdout == table([head_model("onyx")])
 
 
 def test_the_table_as_json():
@@ -61,7 +62,7 @@ def test_the_table_goes_into_a_document(tmp_path):
     path = tmp_path / "a.md"
     path.write_text(f"# Title\n{BEGIN}{END}End\n", encoding="utf-8")
     call("onyx", "--table", "-o", path)
-    assert path.read_text(encoding="utf-8") == f"# Title\n{BEGIN}{table([load_model('onyx')])}{END}End\n"
+    assert path.read_text(encoding="utf-8") == f"# Title\n{BEGIN}{table([head_model('onyx')])}{END}End\n"
 
 
 def test_a_document_without_a_place_is_left_alone(tmp_path):

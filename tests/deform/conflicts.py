@@ -70,11 +70,22 @@ class Edges:
         return _cosines(vertices, self.model.triangles, self.triangles) < 0
 
 
-def _cosines(vertices: np.ndarray, triangles: np.ndarray, pairs: np.ndarray) -> np.ndarray:
-    corners = vertices.astype(np.float64)[triangles]
-    u, v = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
-    normals = np.stack([u[:, i - 2] * v[:, i - 1] - u[:, i - 1] * v[:, i - 2] for i in range(3)], axis=1)
-    return (normals[pairs[:, 0]] * normals[pairs[:, 1]]).sum(axis=1)
+@njit(cache=True)
+def _cosines(vertices, triangles, pairs):  # type: ignore[no-untyped-def]
+    """The cosine between the normals of each pair of triangles, times both their areas' doubles."""
+    normals = np.empty((len(triangles), 3))
+    for t in range(len(triangles)):
+        a, b, c = triangles[t]
+        for i in range(3):
+            j, k = (i + 1) % 3, (i + 2) % 3
+            y, z = np.float64(vertices[a, j]), np.float64(vertices[a, k])
+            uj, uk, vj, vk = vertices[b, j] - y, vertices[b, k] - z, vertices[c, j] - y, vertices[c, k] - z
+            normals[t, i] = uj * vk - uk * vj
+    result = np.empty(len(pairs))
+    for p in range(len(pairs)):
+        one, other = normals[pairs[p, 0]], normals[pairs[p, 1]]
+        result[p] = one[0] * other[0] + one[1] * other[1] + one[2] * other[2]
+    return result
 
 
 class Poking:
@@ -106,7 +117,8 @@ class Poking:
                 outward = normals @ turn.T
             near = self._near[name]
             outer = ~self._margin[near].any(axis=1)
-            result[name] = int(_through(where, outward, vertices, near, outer, DEPTH).sum())
+            order = np.argsort(where[:, 0])
+            result[name] = int(_through(where[order], outward[order], vertices, near, outer, DEPTH).sum())
         return result
 
 
@@ -132,24 +144,33 @@ def _within(model: HeadModel, triangles: np.ndarray, points: np.ndarray, reach: 
     return ((middle > low) & (middle < high)).all(axis=1)
 
 
-@njit(cache=False)
+@njit(cache=True)
 def _through(points, outward, vertices, triangles, outer, depth):  # type: ignore[no-untyped-def]
-    """Which of ``points`` have the outside of an ``outer`` triangle within ``depth`` behind them and none before."""
+    """Which of ``points`` have the outside of an ``outer`` triangle within ``depth`` behind them and none before.
+
+    The points come in the order of their x.
+    """
     behind, before = np.zeros(len(points), np.bool_), np.zeros(len(points), np.bool_)
+    across = points[:, 0].copy()
+    low, high = points[:, 1].min(), points[:, 1].max()
     for t in range(len(triangles)):
         a, b, c = vertices[triangles[t, 0]], vertices[triangles[t, 1]], vertices[triangles[t, 2]]
         ux, uy, uz = b[0] - a[0], b[1] - a[1], b[2] - a[2]
         vx, vy, vz = c[0] - a[0], c[1] - a[1], c[2] - a[2]
         nx, ny, nz = uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx
         square = nx * nx + ny * ny + nz * nz
+        slant = 0.2 * math.sqrt(square)
         size = depth + max(abs(ux), abs(vx)) + max(abs(uy), abs(vy)) + max(abs(uz), abs(vz))
-        for i in range(len(points)):
+        if a[1] + size < low or a[1] - size > high:
+            continue
+        first, last = np.searchsorted(across, a[0] - size), np.searchsorted(across, a[0] + size, side="right")
+        for i in range(first, last):
             px, py, pz = points[i, 0] - a[0], points[i, 1] - a[1], points[i, 2] - a[2]
             if abs(px) > size or abs(py) > size or abs(pz) > size:
                 continue
             dx, dy, dz = outward[i, 0], outward[i, 1], outward[i, 2]
             along = nx * dx + ny * dy + nz * dz
-            if along <= 0.2 * math.sqrt(square):
+            if along <= slant:
                 continue
             far = (nx * px + ny * py + nz * pz) / along
             if abs(far) < 1e-5 or abs(far) > depth:

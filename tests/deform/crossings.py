@@ -20,11 +20,19 @@ def crossings(points: Doubles, edges: Indices, others: Doubles, triangles: Indic
     a, b = points[edges[:, 0]], points[edges[:, 1]]
     corners = others[triangles]
     low, high = np.minimum(a, b), np.maximum(a, b)
-    near = np.ones((len(edges), len(triangles)), bool)
+    lowest, highest = corners.min(axis=1), corners.max(axis=1)
+    # what lies outside the box round all of the other mesh meets nothing
+    some = np.flatnonzero((low <= highest.max(axis=0)).all(axis=1) & (high >= lowest.min(axis=0)).all(axis=1))
+    if not len(some):
+        return np.empty((0, 2), np.int32)
+    inside = (lowest <= high[some].max(axis=0)).all(axis=1) & (highest >= low[some].min(axis=0)).all(axis=1)
+    few = np.flatnonzero(inside)
+    near = np.ones((len(some), len(few)), bool)
     for axis in range(3):
-        near &= low[:, None, axis] <= corners[None, :, :, axis].max(2)
-        near &= high[:, None, axis] >= corners[None, :, :, axis].min(2)
+        near &= low[some, None, axis] <= highest[None, few, axis]
+        near &= high[some, None, axis] >= lowest[None, few, axis]
     e, t = np.nonzero(near)
+    e, t = some[e], few[t]
     origin, ray = a[e], b[e] - a[e]
     first, one, two = corners[t, 0], corners[t, 1] - corners[t, 0], corners[t, 2] - corners[t, 0]
     p = np.cross(ray, two)

@@ -7,15 +7,14 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from agentface.anatomy.model import load_model
 from agentface.bench import BENCHES, crowd, deform, frame, papers, plain
 from agentface.bench.timing import interleave
 from agentface.deform.combine import STEP, parallel
 from agentface.deform.normals import vertex_normals
-from agentface.deform.pipeline import GeometricDeformer
 from agentface.errors import UnknownNameError
 from agentface.parameters import PARAMETERS, FacePose
 from tests.deform.rig import make_rig
+from tests.heads import deformer_of, head_model
 
 
 def test_the_report_has_its_keys_and_positive_numbers():
@@ -91,7 +90,7 @@ def test_all_ways_compute_what_the_oracle_does(levels, falloff):
 
 
 def test_the_ways_of_the_paper_agree_on_a_face():
-    report = papers.run(load_model("amber"), rounds=1)
+    report = papers.run(head_model("amber"), rounds=1)
     assert (report["vertices"], report["polygons"], report["steps"]) == (5919, 11734, 5)
     for way in papers.WAYS:
         row = report[way]
@@ -117,7 +116,7 @@ def positive(figures):
 
 
 def test_the_frame_is_told_beside_its_baseline_stage_by_stage_and_by_density():
-    report = frame.run(load_model("amber"), rounds=1, finest=6_000)
+    report = frame.run(head_model("amber"), rounds=1, finest=6_000)
     assert set(report) == {"vertices", "gemv_one_thread", "baseline", "smile", "mixed", "all_active", "growth"}
     parts = {f"{part}{state}_us" for part in ("gemv", "normals", "baseline") for state in ("", "_warm")}
     assert set(report["baseline"]) == parts
@@ -142,7 +141,7 @@ def test_the_poses_of_the_frame_are_what_they_are_called():
 
 
 def test_the_stages_of_a_frame_make_the_frame():
-    deformer, pose = GeometricDeformer(load_model("amber")), frame.poses()["all_active"]
+    deformer, pose = deformer_of("amber"), frame.poses()["all_active"]
     expected = deepcopy(deformer.deform(pose))
     deformer.deform(FacePose())
     for act in deformer.stages().values():
@@ -152,7 +151,7 @@ def test_the_stages_of_a_frame_make_the_frame():
 
 
 def test_a_crowd_is_told_by_its_size_and_threads():
-    report = crowd.run(load_model("amber"), sizes=(1, 20), faces=20)
+    report = crowd.run(head_model("amber"), sizes=(1, 20), faces=20)
     assert set(report) == {"vertices", "faces_1", "faces_20"}
     for size in (1, 20):
         row = report[f"faces_{size}"]

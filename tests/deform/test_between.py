@@ -4,12 +4,12 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from agentface.anatomy.model import load_model
 from agentface.anatomy.resample import subdivided
 from agentface.deform import between
 from agentface.deform.compiled import between as compiled
+from tests.heads import head_model
 
-MODEL = load_model("amber")
+MODEL = head_model("amber")
 FINEST = subdivided(subdivided(MODEL))
 
 

@@ -5,12 +5,12 @@ from itertools import combinations
 import numpy as np
 import pytest
 
-from agentface.anatomy.model import load_model
 from agentface.deform.pipeline import GeometricDeformer
 from agentface.emotion.inference import default_inference
 from agentface.emotion.state import EMOTIONS, EmotionState
 from agentface.parameters import PARAMETERS, FacePose
 from tests.deform.conflicts import Edges, Poking, fold_vertices, random_poses
+from tests.heads import deformer_of, head_model
 
 COUNT, SEED = 2000, 2003
 POKE_EVERY = 3
@@ -20,8 +20,8 @@ FACES = ("amber", "onyx")
 @pytest.mark.slow
 @pytest.mark.parametrize("face", FACES)
 def test_random_poses(face):
-    model = load_model(face)
-    deformer, edges, poking = GeometricDeformer(model), Edges.of(model), Poking(model)
+    model = head_model(face)
+    deformer, edges, poking = deformer_of(face), Edges.of(model), Poking(model)
     outside = ~edges.folding()
     flipped, through = {}, {}
     for number, pose in enumerate(random_poses(COUNT, SEED)):
@@ -67,7 +67,7 @@ def test_no_emotion_turns_skin_over(face):
 def test_few_muscles_in_full_turn_skin_over_below_a_corner_of_the_mouth_alone(face):
     """There press meets one cheek's levator anguli oris and zygomaticus; five in eight hundred poses."""
     found = turned_over(face, sparse(400, 82))
-    corner = load_model(face).landmarks["mouth_corner_l"]
+    corner = head_model(face).landmarks["mouth_corner_l"]
     assert len(found) <= 3, found
     for places in found.values():
         assert (np.linalg.norm(np.abs(places) - np.abs(corner), axis=1) < 0.02).all(), found
@@ -88,8 +88,8 @@ def test_the_brow_comes_down_on_an_eye_that_opens(face):
 
 def turned_over(face, poses):
     """Where skin turns over outside the folds, metres at rest, by the names of those of ``poses`` in which it does."""
-    model = load_model(face)
-    deformer, edges = GeometricDeformer(model), Edges.of(model)
+    model = head_model(face)
+    deformer, edges = deformer_of(face), Edges.of(model)
     outside, found = ~edges.folding(), {}
     for name, pose in poses:
         over = edges.flipped(deformer.deform(pose).vertices) & outside
@@ -101,7 +101,7 @@ def turned_over(face, poses):
 @pytest.mark.parametrize("face", FACES)
 def test_little_is_left_out_as_a_fold(face):
     """The lips' red, the inside of the mouth and the lids with the crease above them: a sixth of the edges."""
-    model = load_model(face)
+    model = head_model(face)
     edges = Edges.of(model)
     assert 0.14 < edges.folding().mean() < 0.18
     assert fold_vertices(model).mean() < 0.19
@@ -110,7 +110,7 @@ def test_little_is_left_out_as_a_fold(face):
 @pytest.mark.parametrize("face", FACES)
 def test_what_has_flipped_or_come_through_is_found(face):
     """The detectors themselves: a vertex pushed over its neighbours, a lid into the eye, a lip into the teeth."""
-    model = load_model(face)
+    model = head_model(face)
     geometry, edges, poking = GeometricDeformer(model).deform(FacePose()), Edges.of(model), Poking(model)
     assert not edges.flipped(geometry.vertices).any()
     assert not any(poking.count(geometry).values())

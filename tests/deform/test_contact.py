@@ -5,16 +5,15 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from agentface.anatomy.model import load_model
 from agentface.deform import contact
 from agentface.deform.compiled import contact as compiled
 from agentface.deform.dental_arch import fit_arch
 from agentface.deform.lip_grid import column_places, lip_grid
-from agentface.deform.pipeline import GeometricDeformer
 from agentface.parameters import COUNT, PARAMETERS, FacePose, indices_of
 from tests.deform.crossings import crossings, edges_of
+from tests.heads import deformer_of, head_model
 
-FACES = {face: load_model(face) for face in ("amber", "onyx")}
+FACES = {face: head_model(face) for face in ("amber", "onyx")}
 TABLES = {face: contact.prepare(model) for face, model in FACES.items()}
 LOW = np.array([known.low for known in PARAMETERS])
 HIGH = np.array([known.high for known in PARAMETERS])
@@ -72,7 +71,7 @@ def random_poses(count, seed):
 
 
 def test_lips_and_teeth_never_pass_through_each_other(face):
-    mouth, deformer = Mouth(FACES[face]), GeometricDeformer(FACES[face])
+    mouth, deformer = Mouth(FACES[face]), deformer_of(face)
     for pose in random_poses(150, seed=5):
         geometry = deformer.deform(pose)
         assert mouth.crossings(geometry.vertices, geometry.jaw) == (0, 0, 0), repr(pose)
@@ -92,13 +91,13 @@ def test_lips_and_teeth_never_pass_through_each_other(face):
     ],
 )
 def test_tight_lips_that_smile_do_not_pass_through_each_other(face, muscles):
-    geometry = GeometricDeformer(FACES[face]).deform(FacePose.of(**muscles))
+    geometry = deformer_of(face).deform(FacePose.of(**muscles))
     assert Mouth(FACES[face]).crossings(geometry.vertices, geometry.jaw) == (0, 0, 0)
 
 
 def test_lips_of_muscles_at_their_ends_hardly_ever_pass_through_each_other(face):
     """Muscles at 0 or 1 are the hardest: at most one pose in ten, by a few edges; none through the teeth."""
-    mouth, deformer = Mouth(FACES[face]), GeometricDeformer(FACES[face])
+    mouth, deformer = Mouth(FACES[face]), deformer_of(face)
     rng, through = np.random.default_rng(9), []
     for number in range(60):
         values = np.where(rng.random(COUNT) < (0.5 if number % 2 else 0.25), HIGH, np.maximum(LOW, 0.0))
@@ -114,7 +113,7 @@ def test_lips_of_muscles_at_their_ends_hardly_ever_pass_through_each_other(face)
 @pytest.mark.parametrize("press", [0.4, 0.7, 1.0])
 def test_pressed_lips_are_shut(face, press):
     """From corner to corner no more than a tenth of a millimetre stays open between the lowest and the highest ring."""
-    vertices = GeometricDeformer(FACES[face]).deform(FacePose.of(orbicularis_oris_press=press)).vertices
+    vertices = deformer_of(face).deform(FacePose.of(orbicularis_oris_press=press)).vertices
     rings = FACES[face].lips.rings[:5]
     corner = FACES[face].landmarks["mouth_corner_l"][0]
     for x in np.linspace(-0.6, 0.6, 41) * corner:
@@ -166,10 +165,10 @@ def test_overlapping_lips_part_by_half_each(depth, slide):
 
 
 def test_the_teeth_hold_lips_that_are_pushed_in(face):
-    model, tables, mouth = FACES[face], TABLES[face], Mouth(FACES[face])
+    tables, mouth = TABLES[face], Mouth(FACES[face])
     for opening in (0.0, 0.3, 1.0):
         pose = FacePose.of(jaw_open=opening)
-        geometry = GeometricDeformer(model, compiled=False).deform(pose)
+        geometry = deformer_of(face, compiled=False).deform(pose)
         points = geometry.vertices.copy()
         points[tables.grid[3:12], 2] -= 6 * MM
         contact.apply(tables, pose.values, points)

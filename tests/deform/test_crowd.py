@@ -2,13 +2,13 @@
 
 import math
 from dataclasses import fields
+from functools import cache
 
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from agentface.anatomy.model import load_model
 from agentface.anatomy.resample import thinned
 from agentface.bench.crowd import random_poses
 from agentface.deform.crowd import Crowd
@@ -16,17 +16,21 @@ from agentface.deform.pipeline import GeometricDeformer
 from agentface.deform.ranges import check_pose, check_poses
 from agentface.errors import InvalidValueError
 from agentface.parameters import COUNT, NAMES, PARAMETERS, FacePose
+from tests.heads import deformer_of, head_model
 
-MODELS = {face: load_model(face) for face in ("amber", "onyx")}
-CROWD = Crowd(MODELS["amber"])
-DEFORMER = GeometricDeformer(MODELS["amber"])
+MODELS = {face: head_model(face) for face in ("amber", "onyx")}
+
+
+@cache
+def crowd():
+    return Crowd(MODELS["amber"])
 
 
 @pytest.fixture(scope="module")
 def pair():
-    crowd = Crowd(MODELS["amber"], threads=2)
-    yield crowd
-    crowd.close()
+    pair = Crowd(MODELS["amber"], threads=2)
+    yield pair
+    pair.close()
 
 
 def assert_same(one, other):
@@ -39,7 +43,7 @@ def test_each_face_is_what_the_deformer_makes_of_its_pose(face):
     poses = random_poses(20)
     poses[3] = 0.0
     geometry = Crowd(MODELS[face]).deform(poses)
-    deformer = GeometricDeformer(MODELS[face])
+    deformer = deformer_of(face)
     assert len(geometry) == len(poses)
     for index, pose in enumerate(poses):
         assert_same(geometry.face(index), deformer.deform(FacePose(pose)))
@@ -48,7 +52,7 @@ def test_each_face_is_what_the_deformer_makes_of_its_pose(face):
 def test_one_and_two_threads_make_the_same_faces(pair):
     for count in (1, 8, 9, 100):
         poses = random_poses(count, seed=count)
-        assert_same(pair.deform(poses), CROWD.deform(poses))
+        assert_same(pair.deform(poses), crowd().deform(poses))
 
 
 def test_a_face_does_not_depend_on_its_neighbours_or_its_place(pair):
@@ -101,14 +105,14 @@ def test_a_coarser_face_makes_a_crowd_too():
 )
 def test_bad_poses_are_refused_by_name(poses, message):
     with pytest.raises(InvalidValueError, match=message):
-        CROWD.deform(poses)
+        crowd().deform(poses)
 
 
 def test_a_value_that_is_not_finite_is_told_with_its_face():
     poses = np.zeros((5, COUNT), np.float32)
     poses[4, -1] = np.inf
     with pytest.raises(InvalidValueError, match=r"pose 4: .*finite"):
-        CROWD.deform(poses)
+        crowd().deform(poses)
 
 
 @pytest.mark.parametrize("known", PARAMETERS, ids=NAMES)
@@ -117,13 +121,13 @@ def test_every_parameter_has_its_range_and_the_whole_of_it(known):
     what = "angle" if known.unit == "rad" else "contraction"
     for limit, way in ((known.low, -math.inf), (known.high, math.inf)):
         rows[1, known.index] = limit
-        CROWD.deform(rows)
-        DEFORMER.deform(FacePose.of(**{known.name: limit}))
+        crowd().deform(rows)
+        deformer_of("amber").deform(FacePose.of(**{known.name: limit}))
         rows[1, known.index] = np.nextafter(np.float32(limit), np.float32(way))
         with pytest.raises(InvalidValueError, match=rf"^pose 1: {what} of {known.name}: expected a number in .*\.\."):
-            CROWD.deform(rows)
+            crowd().deform(rows)
         with pytest.raises(InvalidValueError, match=rf"^{what} of {known.name}: expected a number in .*\.\."):
-            DEFORMER.deform(FacePose(rows[1]))
+            deformer_of("amber").deform(FacePose(rows[1]))
 
 
 @settings(max_examples=200)
@@ -138,10 +142,10 @@ def test_what_a_pose_takes_the_deformers_take(fractions):
 
 def test_a_sequence_of_poses_is_a_crowd():
     poses = [FacePose.of(jaw_open=0.5), FacePose.of(zygomaticus_major=1.0, head_yaw=-0.3)]
-    kept = CROWD.deform(np.stack([pose.values for pose in poses])).vertices.copy()
+    kept = crowd().deform(np.stack([pose.values for pose in poses])).vertices.copy()
     for sequence in (poses, tuple(poses), [poses[0], poses[1].values.tolist()]):
-        np.testing.assert_array_equal(CROWD.deform(sequence).vertices, kept)
-    assert len(CROWD.deform([])) == 0
+        np.testing.assert_array_equal(crowd().deform(sequence).vertices, kept)
+    assert len(crowd().deform([])) == 0
 
 
 @pytest.mark.parametrize("threads", [1, 2])

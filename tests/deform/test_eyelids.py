@@ -5,14 +5,14 @@ import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
-from agentface.anatomy.model import load_model
 from agentface.calibration.agreement import agreement
 from agentface.deform import eyelids, eyes
 from agentface.deform.compiled import eyelids as compiled
 from agentface.deform.compiled import simd
 from agentface.parameters import COUNT, NAMES, PARAMETERS, FacePose
+from tests.heads import head_model
 
-FACES = {face: load_model(face) for face in ("amber", "onyx")}
+FACES = {face: head_model(face) for face in ("amber", "onyx")}
 TABLES = {face: eyelids.prepare(model) for face, model in FACES.items()}
 CLOSE, SQUEEZE, WIDEN = "orbicularis_oculi_palpebralis", "orbicularis_oculi_orbitalis", "levator_palpebrae"
 IRIS = 0.445  # of the eye's radius, as the eyes are drawn

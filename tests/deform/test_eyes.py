@@ -8,15 +8,15 @@ from click.testing import CliRunner
 from hypothesis import given
 from hypothesis import strategies as st
 
-from agentface.anatomy.model import load_model
 from agentface.cli import cli
 from agentface.deform import eyes
 from agentface.deform.compiled import eyes as compiled
 from agentface.errors import InvalidValueError
 from agentface.face import Face
 from agentface.parameters import NAMES, PARAMETERS, FacePose, parameter
+from tests.heads import head_model
 
-FACES = {face: load_model(face) for face in ("amber", "onyx")}
+FACES = {face: head_model(face) for face in ("amber", "onyx")}
 TABLES = {face: eyes.prepare(model) for face, model in FACES.items()}
 GAZE = ("gaze_yaw", "gaze_pitch", "gaze_vergence")
 ANGLES = st.tuples(*(st.floats(parameter(name).low, parameter(name).high, width=32) for name in GAZE))

@@ -7,13 +7,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from agentface.anatomy.model import load_model
 from agentface.calibration.action_units import load_action_units
-from agentface.deform.pipeline import GeometricDeformer
 from agentface.emotion.inference import default_inference
 from agentface.emotion.state import EMOTIONS, EmotionState
 from agentface.parameters import FacePose
 from agentface.resources import face_names
+from tests.heads import deformer_of, head_model
 
 FOLDER = Path(__file__).parent / "goldens"
 UNIT_M = 2e-6
@@ -41,8 +40,8 @@ def poses() -> dict[str, FacePose]:
 
 @pytest.mark.parametrize("face", face_names())
 def test_every_vertex_is_where_it_was(face, request):
-    model = load_model(face)
-    deformer = GeometricDeformer(model)
+    model = head_model(face)
+    deformer = deformer_of(face)
     moved = {name: deformer.deform(pose).vertices - model.vertices for name, pose in poses().items()}
     assert len(moved) == 40
     sampled = np.stack([np.rint(field[::EVERY] / UNIT_M) for field in moved.values()]).astype(np.int16)

@@ -5,12 +5,12 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from agentface.anatomy.model import load_model
 from agentface.deform import head
 from agentface.deform.compiled import head as compiled
 from agentface.parameters import FacePose, parameter
+from tests.heads import head_model
 
-TABLES = head.prepare(load_model("amber"))
+TABLES = head.prepare(head_model("amber"))
 ANGLES = st.tuples(
     *(st.floats(parameter(name).low, parameter(name).high) for name in ("head_yaw", "head_pitch", "head_roll"))
 )

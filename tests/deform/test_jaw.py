@@ -8,14 +8,13 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.spatial import ConvexHull
 
-from agentface.anatomy.model import load_model
 from agentface.calibration.agreement import agreement
 from agentface.deform import jaw
 from agentface.deform.compiled import jaw as compiled
-from agentface.deform.pipeline import GeometricDeformer
 from agentface.parameters import FacePose
+from tests.heads import deformer_of, head_model
 
-FACES = {face: load_model(face) for face in ("amber", "onyx")}
+FACES = {face: head_model(face) for face in ("amber", "onyx")}
 TABLES = {face: jaw.prepare(model) for face, model in FACES.items()}
 LIP_RINGS = 8
 OPENINGS = (0.25, 0.5, 0.75, 1.0)
@@ -103,7 +102,7 @@ def test_lids_brows_and_forehead_stay(face):
 
 def test_the_mouth_opens_to_an_oval(face):
     """The outline of the opening, seen from the front, is its own convex hull and as round at the corners."""
-    model, deformer = FACES[face], GeometricDeformer(FACES[face])
+    model, deformer = FACES[face], deformer_of(face)
     ring = model.lips.rings[0]
     outline = [*ring.upper, *ring.lower[-2:0:-1]]
     for opening in OPENINGS[1:]:
@@ -130,7 +129,7 @@ def test_no_skin_is_torn(face, opening):
 
 def test_the_jaw_agrees_with_the_artists(face):
     model = FACES[face]
-    moved = GeometricDeformer(model).deform(FacePose.of(jaw_open=1.0)).vertices - model.vertices
+    moved = deformer_of(face).deform(FacePose.of(jaw_open=1.0)).vertices - model.vertices
     row = agreement(model, moved, model.shapes["jawOpen"].dense(len(moved)))
     assert row.cosine > 0.95
     assert 0.95 < row.peak_ratio < 1.05
@@ -166,7 +165,7 @@ def test_compiled_and_plain_are_the_same(opening):
 
 def test_the_drawn_lips_turn_by_the_papers_shares(face):
     """What is drawn, after the lips' surface, and not only the shares that the mesh has."""
-    model, deformer = FACES[face], GeometricDeformer(FACES[face])
+    model, deformer = FACES[face], deformer_of(face)
     _, y, z = model.jaw.pivot
     for opening in OPENINGS:
         for name, act in deformer.stages().items():

@@ -20,8 +20,9 @@ from agentface.emotion.state import EMOTIONS, EmotionState
 from agentface.errors import DataError
 from agentface.parameters import VECTOR_MUSCLES, FacePose, indices_of
 from tests.deform.conflicts import Edges
+from tests.heads import head_model
 
-FACES = {face: load_model(face) for face in ("amber", "onyx")}
+FACES = {face: head_model(face) for face in ("amber", "onyx")}
 TABLES = {face: limits.prepare(model) for face, model in FACES.items()}
 CREASES = {face: creases.prepare(m, eyelids.prepare(m), lips.prepare(m)) for face, m in FACES.items()}
 COMBINERS = {face: Combiner(model.vertices, model.muscles) for face, model in FACES.items()}

@@ -6,7 +6,6 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
 
-from agentface.anatomy.model import load_model
 from agentface.deform import bspline, lips
 from agentface.deform.compiled import lips as compiled
 from agentface.deform.lip_grid import VERMILION_RING, lip_grid
@@ -14,8 +13,9 @@ from agentface.deform.lip_mesh import evaluate, patch_mesh
 from agentface.deform.lip_surface import COLUMNS, ROWS, grid_places, mirrored_controls, weights
 from agentface.errors import InvalidValueError
 from agentface.parameters import FacePose
+from tests.heads import head_model
 
-FACES = {face: load_model(face) for face in ("amber", "onyx")}
+FACES = {face: head_model(face) for face in ("amber", "onyx")}
 TABLES = {face: lips.prepare(model) for face, model in FACES.items()}
 MM = 1e-3
 

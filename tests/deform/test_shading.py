@@ -5,12 +5,12 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from agentface.anatomy.model import load_model
 from agentface.deform import shading, wrinkles
 from agentface.deform.compiled import shading as compiled
 from agentface.deform.normals import vertex_normals
+from tests.heads import head_model
 
-MODEL = load_model("amber")
+MODEL = head_model("amber")
 WRINKLES = wrinkles.prepare(MODEL)
 TABLES = shading.prepare(MODEL, WRINKLES)
 

@@ -3,10 +3,9 @@
 import numpy as np
 import pytest
 
-from agentface.anatomy.model import load_model
-from agentface.deform.pipeline import GeometricDeformer
 from agentface.parameters import NAMES, FacePose, indices_of
 from tests.deform.conflicts import random_poses
+from tests.heads import deformer_of, head_model
 
 TURNED = [name for name in NAMES if name.endswith(("yaw", "roll"))]
 
@@ -26,10 +25,10 @@ def image(pose):
 @pytest.mark.parametrize("compiled", [True, False])
 @pytest.mark.parametrize("face", ["amber", "onyx"])
 def test_a_mirrored_pose_makes_the_mirrored_face(face, compiled):
-    model = load_model(face)
-    deformer = GeometricDeformer(model, compiled=compiled)
+    model = head_model(face)
+    deformer = deformer_of(face, compiled=compiled)
     flip = np.array([-1, 1, 1])
-    for pose in random_poses(200 if compiled else 10, seed=11):
+    for pose in random_poses(200 if compiled else 6, seed=11):
         one = deformer.deform(pose)
         vertices, eyes, jaw, head, heights = (
             array.copy() for array in (one.vertices, one.eye_rotations, one.jaw, one.head, one.wrinkles)

@@ -7,7 +7,6 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from agentface.anatomy.model import load_model
 from agentface.anatomy.trains import DrawnTrain, ZoneTrain, heights, inner_feet, parabolas, relief
 from agentface.anatomy.wrinkles import read_wrinkles
 from agentface.deform import wrinkles
@@ -15,6 +14,7 @@ from agentface.deform.compiled import wrinkles as compiled
 from agentface.deform.normals import corner_normals, vertex_normals
 from agentface.errors import DataError
 from agentface.parameters import COUNT, MUSCLES, NAMES, PARAMETERS, indices_of
+from tests.heads import head_model
 
 ZONE = ZoneTrain(np.array([0.0, 0.03, 0.0]), np.array([0.0, -1.0, 0.0]), math.radians(35), 0.05, 4, 0.001)
 FAN = {"along": np.array([0.0, 1.0, 0.0]), "across": np.array([1.0, 0.0, 0.0]), "bow": -40.0, "fan": True}
@@ -27,7 +27,7 @@ CONTRACTIONS = [parameter.index for parameter in PARAMETERS if parameter.low == 
 
 @pytest.fixture(scope="module", params=["amber", "onyx"])
 def face(request):
-    model = load_model(request.param)
+    model = head_model(request.param)
     return model, wrinkles.prepare(model)
 
 

@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from skfuzzy.control import ControlSystem
 
 from agentface.bench.fuzzy import control_centroids, control_simulation
 from agentface.emotion.inference import Inference
@@ -38,14 +39,20 @@ def distinct(mode: Mode) -> tuple[Mode, dict[str, str]]:
 def largest_difference(rulebase: RuleBase, mode: Mode, states: list[EmotionState]) -> float:
     inference = only(rulebase, mode)
     reduced, alike = distinct(mode)
-    simulation = control_simulation(reduced)
     largest = 0.0
-    for state in states:
-        weight = mode_weights(state.values, rulebase.gap)[mode.emotions]
-        centroids = control_centroids(simulation, reduced, state)
-        for muscle, contraction in zip(MUSCLES, inference.contractions(state), strict=True):
-            expected = weight * rescale(centroids[alike[muscle]]) if muscle in alike else 0.0
-            largest = max(largest, abs(contraction - expected) / weight)
+    # scikit-fuzzy would work out the order of the rules for every rule that it adds and for every state
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(ControlSystem, "rules", ())
+        simulation = control_simulation(reduced)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(ControlSystem, "rules", ordered := list(simulation.ctrl.rules))
+        assert len(ordered) == 5 ** len(mode.emotions)
+        for state in states:
+            weight = mode_weights(state.values, rulebase.gap)[mode.emotions]
+            centroids = control_centroids(simulation, reduced, state)
+            for muscle, contraction in zip(MUSCLES, inference.contractions(state), strict=True):
+                expected = weight * rescale(centroids[alike[muscle]]) if muscle in alike else 0.0
+                largest = max(largest, abs(contraction - expected) / weight)
     return largest
 
 

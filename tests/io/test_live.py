@@ -4,14 +4,15 @@ import threading
 
 import pytest
 
-from agentface import Face, load_model
+from agentface import Face
 from agentface.io.live import run_live
 from agentface.motion.clock import ManualClock
+from tests.heads import head_model
 
 
 @pytest.fixture
 def face():
-    return Face(load_model())
+    return Face(head_model())
 
 
 def test_frames_fall_on_a_grid(face):

@@ -7,11 +7,12 @@ import numpy as np
 import pytest
 from osc_bytes import bundle, message
 
-from agentface import EmotionState, Face, load_model
+from agentface import EmotionState, Face
 from agentface.io.osc.agenda import FURTHEST_S, MOST
 from agentface.io.osc.codec import decode
 from agentface.io.osc.receiver import ANSWERS_A_SECOND, ANSWERS_AT_ONCE, Receiver
 from agentface.motion.clock import ManualClock
+from tests.heads import head_model
 
 ME = ("127.0.0.1", 1)
 
@@ -41,7 +42,7 @@ class Desk:
 
 @pytest.fixture(scope="module")
 def model():
-    return load_model()
+    return head_model()
 
 
 @pytest.fixture

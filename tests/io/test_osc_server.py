@@ -8,16 +8,17 @@ import time
 import pytest
 from osc_bytes import message
 
-from agentface import EmotionState, Face, load_model
+from agentface import EmotionState, Face
 from agentface.errors import ServerError
 from agentface.io.osc import server as server_module
 from agentface.io.osc.codec import decode
 from agentface.io.osc.server import MOST_WAITING, OscServer
+from tests.heads import head_model
 
 
 @pytest.fixture(scope="module")
 def model():
-    return load_model()
+    return head_model()
 
 
 @pytest.fixture

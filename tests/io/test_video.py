@@ -142,9 +142,9 @@ def test_drawing_later_tells_the_time_left(tmp_path):
 @pytest.mark.gl
 @pytest.mark.parametrize("name", ["film.mp4", "face-%05d.png"])
 def test_an_interrupt_while_drawing_keeps_what_is_drawn(tmp_path, name):
-    with serve_later(tmp_path / name, 3.0, "640x480") as server:
+    with serve_later(tmp_path / name, 1.5, "640x480") as server:
         said = ""
-        while not re.search(r"\s[1-9]\d?%", said):
+        while not re.search(r"\s[1-9]\d?%", said[-5:]):
             said += server.stderr.read(1)
             assert server.poll() is None, said
         server.send_signal(signal.SIGINT)
@@ -161,7 +161,7 @@ def test_an_interrupt_while_drawing_keeps_what_is_drawn(tmp_path, name):
         paths = sorted(tmp_path.iterdir())
         assert [path.name for path in paths] == [f"face-{number:05d}.png" for number in range(len(paths))]
         count = len([Image.open(path).load() for path in paths])
-    assert 0 < count < 180
+    assert 0 < count < 90
 
 
 def test_a_full_disk_is_told_and_nothing_is_left(tmp_path):

@@ -3,9 +3,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from agentface.anatomy.model import load_model
 from agentface.errors import InvalidValueError, UnknownNameError
 from agentface.view.camera import VIEWS, Camera, named_view
+from tests.heads import head_model
 
 metres = st.floats(-3, 3)
 points = st.tuples(metres, metres, metres)
@@ -68,7 +68,7 @@ def test_half_the_field_of_view_reaches_the_edge():
 @pytest.mark.parametrize("view", list(VIEWS))
 @pytest.mark.parametrize("aspect", [0.5, 0.8, 1.0, 16 / 9, 3.0])
 def test_named_views_hold_the_whole_head(face, view, aspect):
-    model = load_model(face)
+    model = head_model(face)
     camera = named_view(model, view)
     head = model.vertices[model.vertices[:, 1] > model.landmarks["menton"][1]]
     clip = np.c_[head, np.ones(len(head))] @ (camera.projection(aspect) @ camera.view()).T
@@ -88,4 +88,4 @@ def test_wrong_cameras_say_what_is_wrong():
     with pytest.raises(InvalidValueError, match="field_of_view"):
         Camera((0, 0, 1), (0, 0, 0), field_of_view=4.0)
     with pytest.raises(UnknownNameError, match="profile"):
-        named_view(load_model("amber"), "profil")
+        named_view(head_model("amber"), "profil")

@@ -85,7 +85,9 @@ def test_every_shader_compiles(context):
         "skin": ["skin"],
         "skin_fast": ["skin_fast"],
         "atlas": ["atlas"],
-        "part": ["part", "cloth"],
+        "part": ["part"],
+        "cloth": ["cloth"],
+        "unwrap": ["unwrap"],
         "eye": ["eye"],
         "anchored": ["part", "cap"],
         "screen": ["background", "copy"],
@@ -94,7 +96,9 @@ def test_every_shader_compiles(context):
     assert {path.name.split(".")[0] for path in folder.glob("*.vert.glsl")} == {*fragments, "depth"}
     for vertex, used in fragments.items():
         for fragment in used:
-            for defines in ((), ("WRINKLED",)) if vertex.startswith("skin") else ((),):
+            for defines in (
+                ((), ("WRINKLED",), ("TEXTURED",), ("TEXTURED", "WRINKLED")) if vertex.startswith("skin") else ((),)
+            ):
                 compile_program(context, f"{vertex}.vert.glsl", f"{fragment}.frag.glsl", defines=defines).release()
     compile_program(context, "depth.vert.glsl", None).release()
 

@@ -5,13 +5,13 @@ from collections import Counter
 import numpy as np
 import pytest
 
-from agentface.anatomy.model import load_model
 from agentface.deform import lips as deformer
 from agentface.parameters import FacePose
 from agentface.view.lips import FineLips
 from agentface.view.refine import refine, vertex_normals
+from tests.heads import head_model
 
-FACES = {face: load_model(face) for face in ("amber", "onyx")}
+FACES = {face: head_model(face) for face in ("amber", "onyx")}
 MM = 1e-3
 
 

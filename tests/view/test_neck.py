@@ -3,16 +3,16 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from agentface.anatomy.model import load_model
 from agentface.deform.pipeline import GeometricDeformer
 from agentface.parameters import FacePose
 from agentface.resources import face_names
 from agentface.view.neck import Neck, shares
+from tests.heads import head_model
 
 
 @pytest.mark.parametrize("face", face_names())
 def test_the_face_turns_with_the_head_and_the_collar_stays(face):
-    model = load_model(face)
+    model = head_model(face)
     geometry = GeometricDeformer(model).deform(FacePose.of(head_yaw=0.5, head_pitch=-0.2, head_roll=0.2))
     vertices, normals = geometry.vertices.copy(), geometry.smooth_normals.copy()
     Neck(model).hold(geometry.head, vertices, normals)
@@ -29,7 +29,7 @@ def test_the_face_turns_with_the_head_and_the_collar_stays(face):
 
 
 def test_a_head_that_looks_ahead_leaves_the_skin_as_it_is():
-    model = load_model("amber")
+    model = head_model("amber")
     vertices, normals = model.vertices.copy(), model.vertices.copy()
     Neck(model).hold(np.eye(4, dtype=np.float32), vertices, normals)
     np.testing.assert_array_equal(vertices, model.vertices)

@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from agentface.anatomy.build.occlusion import ambient_light, half_sphere
-from agentface.anatomy.model import load_model
+from tests.heads import head_model
 
 
 def grid(side, height):
@@ -45,7 +45,7 @@ def test_directions_are_units_and_their_mirror_images_cover_the_sphere():
 
 @pytest.mark.parametrize("face", ["amber", "onyx"])
 def test_baked_light_is_bright_on_the_forehead_dark_in_the_mouth_and_symmetric(face):
-    model = load_model(face)
+    model = head_model(face)
     light = model.shade[:, 0]
     forehead = np.linalg.norm(model.vertices - model.landmarks["hairline_middle"], axis=1).argmin()
     assert light[forehead] > 0.95

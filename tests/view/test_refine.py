@@ -3,8 +3,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from agentface.anatomy.model import load_model
 from agentface.view.refine import refine, unrefined, vertex_normals
+from tests.heads import head_model
 
 OCTAHEDRON = np.array([[1, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -1, 0], [0, 0, 1], [0, 0, -1]], np.float32)
 FACES = np.array([[0, 2, 4], [2, 1, 4], [1, 3, 4], [3, 0, 4], [2, 0, 5], [1, 2, 5], [3, 1, 5], [0, 3, 5]], np.int32)
@@ -41,7 +41,7 @@ def test_flat_meshes_stay_flat_and_keep_their_area_and_winding():
 
 @pytest.mark.parametrize("face", ["amber", "onyx"])
 def test_refined_heads_keep_their_vertices(face):
-    model = load_model(face)
+    model = head_model(face)
     normals = vertex_normals(model.vertices, model.triangles)
     finer = refine(model.triangles, len(model.vertices))
     placed = finer.positions(model.vertices, normals)

@@ -2,13 +2,13 @@ import numpy as np
 import pytest
 from scipy.ndimage import label
 
-from agentface.anatomy.model import load_model
 from agentface.deform.geometry import FaceGeometry
 from agentface.errors import DataError, InvalidValueError, UnknownNameError
 from agentface.view.camera import Camera, named_view
 from agentface.view.look import load_look, read_look
 from agentface.view.refine import vertex_normals
 from agentface.view.renderer import Renderer
+from tests.heads import head_model
 
 pytestmark = pytest.mark.gl
 
@@ -24,9 +24,16 @@ def shown(model, **shapes):
 
 @pytest.fixture(scope="module", params=["amber", "onyx"])
 def renderer(request):
-    renderer = Renderer(load_model(request.param))
+    renderer = Renderer(head_model(request.param))
     yield renderer
     renderer.context.release()
+
+
+@pytest.fixture(scope="module")
+def green(renderer):
+    """The same face before green."""
+    bright = {"background_inner": [0.0, 1.0, 0.0], "background_outer": [0.0, 1.0, 0.0]}
+    return Renderer(renderer.model, renderer.look.model_copy(update=bright), renderer.context)
 
 
 @pytest.mark.parametrize("view", ["front", "three-quarter", "profile"])
@@ -105,9 +112,7 @@ def test_expressions_eyes_jaw_and_head_change_the_picture(renderer):
     [{}, {"jawOpen": 0.9}, {"eyeWideLeft": 1.0, "eyeWideRight": 1.0}, {"eyeBlinkLeft": 0.5, "mouthSmileLeft": 1.0}],
 )
 @pytest.mark.parametrize("view", ["front", "three-quarter"])
-def test_nothing_shows_through_eyes_and_mouth(renderer, shapes, view):
-    bright = {"background_inner": [0.0, 1.0, 0.0], "background_outer": [0.0, 1.0, 0.0]}
-    green = Renderer(renderer.model, renderer.look.model_copy(update=bright), renderer.context)
+def test_nothing_shows_through_eyes_and_mouth(renderer, green, shapes, view):
     geometry = shown(renderer.model, **shapes)
     picture = green.render(geometry, (400, 400), view).astype(int)
     backdrop = (picture[..., 1] > picture[..., 0] + 40) & (picture[..., 1] > picture[..., 2] + 40)

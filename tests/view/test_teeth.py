@@ -5,16 +5,16 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from agentface.anatomy.model import load_model
 from agentface.resources import face_names
 from agentface.view.shirt import shirt
 from agentface.view.teeth import crown_places
+from tests.heads import head_model
 
 
 @pytest.mark.parametrize("face", face_names())
 @pytest.mark.parametrize("row", ["teeth_upper", "teeth_lower"])
 def test_each_of_fourteen_teeth_spans_its_own_width_and_height(face, row):
-    mesh = load_model(face).parts[row]
+    mesh = head_model(face).parts[row]
     tooth = mesh.attributes["_MATERIAL"][:, 0] / 255.0
     positions = mesh.attributes["POSITION"]
     places = crown_places(positions, mesh.triangles, tooth)
@@ -43,7 +43,7 @@ def test_a_tooth_alone_needs_no_gum():
 
 
 def test_the_shirt_is_measured_from_its_collar():
-    model = load_model("amber")
+    model = head_model("amber")
     vertices, triangles, weave = shirt(model)
     assert len(weave) == len(vertices) == triangles.max() + 1
     assert 0 <= weave[:, 0].min() <= weave[:, 0].max() <= np.pi + 1e-6

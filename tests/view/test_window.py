@@ -2,15 +2,16 @@ import sys
 
 import pytest
 
-from agentface import Face, load_model
+from agentface import Face
 from agentface.errors import GraphicsError
 from agentface.view import window as window_module
 from agentface.view.window import Window
+from tests.heads import head_model
 
 
 @pytest.fixture
 def face():
-    return Face(load_model("amber"), compiled=False)
+    return Face(head_model("amber"), compiled=False)
 
 
 def test_without_glfw_the_error_says_how_to_get_it(face, monkeypatch):

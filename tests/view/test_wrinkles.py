@@ -4,13 +4,13 @@ import numpy as np
 import pytest
 from scipy.ndimage import binary_dilation
 
-from agentface.anatomy.model import load_model
 from agentface.anatomy.trains import heights
 from agentface.deform.geometry import FaceGeometry
 from agentface.view.camera import named_view
 from agentface.view.refine import vertex_normals
 from agentface.view.renderer import Renderer
-from agentface.view.wrinkles import SIDE
+from agentface.view.wrinkles import SIDE, STEEPEST
+from tests.heads import head_model
 
 pytestmark = pytest.mark.gl
 
@@ -19,7 +19,7 @@ SIZE = (320, 240)
 
 @pytest.fixture(scope="module", params=["amber", "onyx"])
 def renderer(request):
-    renderer = Renderer(load_model(request.param))
+    renderer = Renderer(head_model(request.param))
     yield renderer
     renderer.context.release()
 
@@ -34,7 +34,7 @@ def at_rest(model, **levels):
 def spread(renderer, **levels):
     atlas = renderer._wrinkles
     assert atlas.update(at_rest(renderer.model, **levels).wrinkle_levels)
-    return atlas.texels.copy()
+    return atlas.heights.copy()
 
 
 def places(model, atlas):
@@ -58,13 +58,13 @@ def test_the_atlas_holds_the_heights_of_the_skin(renderer, name):
     column, row, shown = places(model, renderer._wrinkles)
     shown &= expected > 0.3 * placed.train.height
     assert shown.sum() > 5
-    gap = np.abs(texels[row[shown], column[shown], 0] - expected[shown])
+    gap = np.abs(texels[row[shown], column[shown]] - expected[shown])
     assert np.median(gap) < 0.1 * placed.train.height
 
 
 def test_no_train_ends_in_a_step(renderer):
     for placed, patch in zip(renderer.model.trains, renderer._wrinkles.patches, strict=True):
-        height, most = patch.texels[..., 0], 0.02 * placed.train.height
+        height, most = patch.heights, 0.02 * placed.train.height
         assert max(height[0].max(), height[-1].max()) <= most, placed.name
         inner = [height[:, 0]] * (patch.columns.start > 0) + [height[:, -1]] * (patch.columns.stop < SIDE)
         assert all(column.max() <= most for column in inner), placed.name
@@ -72,7 +72,7 @@ def test_no_train_ends_in_a_step(renderer):
 
 def test_one_side_of_the_atlas_is_the_others_mirror_image(renderer):
     left, right = (spread(renderer, **{f"nasolabial_smile_{side}": 0.7, "chin": 0.2}) for side in "lr")
-    assert left[..., 0].max() > 0.5e-3
+    assert left.max() > 0.5e-3
     np.testing.assert_allclose(left, right[:, ::-1], atol=2e-5)
 
 
@@ -82,8 +82,29 @@ def test_the_highest_train_stands_and_the_last_frame_is_forgotten(renderer):
     np.testing.assert_allclose(both, np.maximum(one, other), atol=1e-9)
     np.testing.assert_array_equal(spread(renderer, forehead_medial=0.5), one)
     np.testing.assert_allclose(spread(renderer, forehead_medial=1.0), 2 * one, atol=1e-9)
-    shown = np.frombuffer(renderer._wrinkles.texture.read(), np.float32).reshape(SIDE, SIDE, 2)
-    np.testing.assert_array_equal(shown, renderer._wrinkles.texels)
+
+
+def test_the_texture_holds_the_slopes_of_the_heights(renderer):
+    atlas = renderer._wrinkles
+    for levels in ({"forehead_medial": 0.5, "glabella": 1.0}, {"crows_feet": 0.7}):  # the first must be forgotten
+        heights = spread(renderer, **levels)
+        slopes = STEEPEST * atlas.relief[..., 1] * np.abs(atlas.relief[..., 1])
+        expected = np.gradient(heights, (atlas.height[1] - atlas.height[0]) / SIDE, axis=0)
+        assert np.median(np.abs(slopes - expected)[heights > 1e-5]) < 1e-3 < np.abs(expected).max()
+    texels = np.frombuffer(atlas.texture.read(), np.uint8).reshape(SIDE, SIDE, 4)
+    root = (texels[..., :2] / 255 - 0.5) * 2
+    np.testing.assert_allclose(root, atlas.relief[..., :2], atol=1 / 127)
+    np.testing.assert_allclose(texels[..., 2] / 255, atlas.relief[..., 3], atol=1 / 255)
+    assert np.abs(texels[heights == 0][..., 3].astype(int) - 127).max() < 8
+
+
+def test_a_slope_towards_the_key_light_is_brighter(renderer):
+    up = np.array([0.0, 0.8, 0.6])
+    for placed, patch in zip(renderer.model.trains, renderer._wrinkles.patches, strict=True):
+        if placed.name.startswith("forehead"):
+            shade, rise = patch.shade(up), patch.slopes[..., 1]
+            assert shade[rise < -0.2].max() > 0 > shade[rise > 0.2].min()
+            assert (shade * rise <= 1e-3).mean() > 0.9
 
 
 @pytest.mark.parametrize("quality", ["fast", "portrait"])

@@ -110,10 +110,10 @@ class Skin:
 
 def smallest_angle(corners: Doubles) -> float:
     """The smallest angle of a triangle ``(3, 3)`` in radians."""
-    sides = np.roll(corners, -1, 0) - corners
-    sides /= np.linalg.norm(sides, axis=1, keepdims=True) + 1e-12
-    cosines = -(sides * np.roll(sides, 1, 0)).sum(1)
-    return float(np.arccos(np.clip(cosines, -1, 1)).min())
+    sides = corners[[1, 2, 0]] - corners
+    sides /= np.sqrt((sides * sides).sum(1, keepdims=True)) + 1e-12
+    cosines = -(sides * sides[[2, 0, 1]]).sum(1)
+    return float(np.arccos(min(max(cosines.max(), -1.0), 1.0)))
 
 
 def balanced(quads: Indices, levels: Indices) -> Indices:

@@ -1,0 +1,34 @@
+"""The faces that ship, read once a process: nothing may write to their arrays."""
+
+from __future__ import annotations
+
+from functools import cache
+from pathlib import Path
+
+from agentface.anatomy.model import HeadModel, load_model
+from agentface.anatomy.muscle_set import MuscleSet
+from agentface.anatomy.muscles import MusclesFile
+from agentface.deform import frame
+from agentface.deform.pipeline import GeometricDeformer
+from agentface.resources import DEFAULT_FACE, face_names
+
+_read = cache(load_model)
+_prepare = frame.prepare
+_prepared = cache(_prepare)
+
+
+def head_model(face: str | Path = DEFAULT_FACE, muscles: MusclesFile | None = None) -> HeadModel:
+    """As :func:`load_model`, which reads a folder anew each time."""
+    return _read(face) if face in face_names() and muscles is None else load_model(face, muscles)
+
+
+def tables(model: HeadModel) -> tuple[frame.PartTables, MuscleSet]:
+    """As :func:`frame.prepare`, whose tables deformers share anyway: each has points of its own."""
+    shipped = any(_read(face) is model for face in face_names())
+    return _prepared(model) if shipped else _prepare(model)
+
+
+@cache
+def deformer_of(face: str = DEFAULT_FACE, *, compiled: bool = True) -> GeometricDeformer:
+    """A deformer that other tests have used before and will use: keep copies of what it gives, write to none of it."""
+    return GeometricDeformer(head_model(face), compiled=compiled)
