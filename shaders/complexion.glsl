@@ -6,6 +6,7 @@ uniform float shine;
 uniform float mouth_front;  // z of the lips at rest
 uniform float mouth_light;  // how much light the lips let in
 
+const float HIDDEN = 0.875;   // of the skin, under dense hair
 const vec3 WRAP = vec3(0.36, 0.20, 0.14);  // how far light goes round the terminator, by channel
 const vec3 RIM_WRAP = vec3(0.1);
 const vec3 SCATTERED = vec3(0.75, 0.35, 0.20);  // how far light goes through the skin, by channel
@@ -18,7 +19,7 @@ vec3 complexion_colour(vec4 tint, float mouth, float wet, float blotches) {
     c *= mix(vec3(1.0), vec3(0.90, 0.80, 0.80), tint.y);
     c = mix(c, vec3(0.34, 0.09, 0.08), mouth);
     c = mix(c, mix(skin_tone, vec3(0.45, 0.15, 0.13), 0.5) * vec3(0.95, 0.72, 0.70), 0.75 * wet);
-    return mix(c, hair_colour, 0.875 * tint.w);
+    return mix(c, hair_colour, HIDDEN * tint.w);
 }
 
 vec3 lip_colour() {
