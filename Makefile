@@ -21,7 +21,7 @@ demo: $(INSTALLED) opengl ## draw out/expressions.png, film out/demo.mp4 with an
 	@$(BIN)/python examples/make_demo.py --out out
 	@printf '\nThese commands are in %s.\n' $(BIN)
 
-# many tests start Python anew, which takes three times as long where it may not keep what it compiled
+# dozens of tests start Python anew: it may keep what it compiled, even where the environment says otherwise
 test: export PYTHONDONTWRITEBYTECODE =
 test: $(INSTALLED) opengl ## ruff, mypy and all tests
 	@$(BIN)/ruff check $(CODE)

@@ -1,20 +1,15 @@
 #version 330 core
-// The layer on the scalp below the strands: dark, for little light gets there.
-#include "frame.glsl"
-#include "shading.glsl"
 #include "noise.glsl"
 #include "develop.glsl"
-centroid in vec3 position, normal, rest_position;
-centroid in vec4 matter;   // depth behind the hairline 0..1, ambient light
+centroid in vec3 lit, rest_position;
+centroid in float edge;
 out vec4 colour;
 
-uniform vec3 hair_colour;
+uniform float coils;  // 1: what one sees is the hair itself, 0: it lies below strands
 
 void main() {
-    vec3 n = normalize(normal);
-    float fine = noise(rest_position * 61.0).b, edge = matter.x;
-    vec3 light = hemisphere(n) * matter.y;
-    for (int i = 0; i < LIGHTS; i++) light += light_colour[i].rgb * clamp(0.6 * dot(n, light_direction[i].xyz) + 0.4, 0.0, 1.0) * 0.5;
+    vec4 grain = noise(rest_position * 61.0);
+    float fine = grain.b, coil = 1.0 - abs(2.0 * grain.a - 1.0);
     float alpha = smoothstep(0.05, 0.95, edge + 0.5 * (fine - 0.5) * (1.0 - edge));
-    colour = vec4(finish(hair_colour * (0.7 + 0.5 * fine) * light), blended(alpha));
+    colour = vec4(lit * mix(0.9 + 0.5 * fine, 0.25 + 2.6 * coil * coil * (0.5 + fine), coils), blended(alpha));
 }

@@ -43,12 +43,12 @@ vec3 scattered(vec3 sharp, vec3 soft, vec3 l) {
 }
 
 float roughness(float gloss, float lip, float moist) {
-    return mix(mix(mix(0.56, 0.44, gloss), 0.34, lip), 0.24, moist);
+    return mix(mix(mix(0.56, 0.44, gloss), 0.43, lip), 0.27, moist);
 }
 
 // How much of the shine is seen.
 float sheen(float ambient, float mouth, float covered, float moist) {
-    return clamp(1.2 * max(ambient, 0.2 * mouth) - 0.15, 0.0, 1.0) * (1.0 - 0.7 * mouth) * (1.0 - 0.8 * covered) * mix(shine, 1.0, moist);
+    return clamp(1.2 * max(ambient, 0.2 * mouth) - 0.15, 0.0, 1.0) * (1.0 - 0.9 * mouth) * (1.0 - 0.8 * covered) * mix(shine, 1.0, moist);
 }
 
 // The gloss of one light on one lobe.

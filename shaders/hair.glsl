@@ -1,6 +1,11 @@
 // Light on hair: Kajiya and Kay 1989, with the two highlights and the light through the fibre of Marschner et al. 2003.
-vec3 hair_light(vec3 base, vec3 along, vec3 n, vec3 view, float gloss, float spread, float cover) {
-    vec3 total = base * hemisphere(n) * cover;
+struct HairLight {
+    vec3 body;   // scattered
+    vec3 shine;  // the two highlights
+};
+
+HairLight hair_lights(vec3 base, vec3 along, vec3 n, vec3 view, float gloss, float spread, float cover) {
+    HairLight total = HairLight(base * hemisphere(n) * cover, vec3(0.0));
     for (int i = 0; i < LIGHTS; i++) {
         vec3 l = light_direction[i].xyz, h = normalize(l + view);
         float t_l = dot(along, l), facing = clamp(0.70 * dot(n, l) + 0.30, 0.0, 1.0);
@@ -9,8 +14,16 @@ vec3 hair_light(vec3 base, vec3 along, vec3 n, vec3 view, float gloss, float spr
         w *= w; w *= w; w *= w; w *= w; w *= w;   // to the power of 32
         c *= c; c *= c; c *= c;                   // of 8
         float body = sqrt(max(1.0 - t_l * t_l, 0.0)), through = max(-dot(view, l), 0.0);
-        vec3 light = base * 0.8 * body + gloss * (0.085 * w + 1.2 * base * c) + gloss * 1.6 * base * through * through * body;
-        total += light_colour[i].rgb * facing * cover * light;
+        vec3 light = light_colour[i].rgb * facing * cover;
+        total.body += light * base * body * (0.8 + gloss * 1.6 * through * through);
+        // a highlight of the bare colour of a light looks blue on dark hair
+        vec3 paler = mix(light, vec3(dot(light, vec3(0.3, 0.5, 0.2))), 0.6) * facing;
+        total.shine += gloss * (0.11 * w * paler + 1.3 * base * c * light);
     }
     return total;
+}
+
+vec3 hair_light(vec3 base, vec3 along, vec3 n, vec3 view, float gloss, float spread, float cover) {
+    HairLight light = hair_lights(base, along, n, view, gloss, spread, cover);
+    return light.body + light.shine;
 }

@@ -12,12 +12,15 @@ in vec3 stroke;        // place along the strand 0..1, radius in metres, light t
 in vec4 paint;         // colour and opacity
 in float side;         // -1 or 1
 
-centroid out vec4 tone;
-centroid out vec3 place;   // across -1..1, along 0..1, a number of its own
+centroid out vec3 dull, bright;  // between and on the highlights
+centroid out vec4 place;         // across -1..1, along 0..1, a number of its own, opacity or how strong its streaks are
 
 uniform vec3 hair_centre;  // of the head, in the model's axes
 uniform float narrowest;   // pixels; a thinner strand fades instead
 uniform float gloss;
+uniform float solid;       // 1: a lock that hides what is behind it, 0: a hair that fades at its sides
+uniform vec2 lift;         // metres that locks are nearer than they are, over their light; without light
+uniform float streaks;     // how many hairs are seen on a lock
 
 void main() {
     vec3 rest = skin_position(anchor) + offset;
@@ -29,15 +32,22 @@ void main() {
     float own = fract(paint.r * 3571.0 + float(anchor) * 0.618);
 
     float t = stroke.x, pixels = stroke.y * eye_point.w / length(towards);
-    float taper = (1.0 - smoothstep(0.62, 1.02, t)) * mix(0.8, 1.0, smoothstep(0.0, 0.12, t));
+    float taper = mix(1.0 - smoothstep(0.62, 1.02, t), 1.0 - 0.7 * smoothstep(0.85, 1.0, t), solid) * mix(0.4, 1.0, smoothstep(0.0, 0.15, t));
     float widened = max(1.0, narrowest / max(pixels * taper, 1e-4));
     // the head hides its far side, though not what hangs below it
     float seen = dot(n, view) < -0.3 && rest.y > hair_centre.y - 0.03 ? 0.0 : 1.0;
-    placed += normalize(cross(along, towards)) * side * seen * stroke.y * taper * widened;
+    // a lock lies on the head, a hair is round
+    vec3 sideways = normalize(cross(along, view + solid * n));
+    placed += sideways * side * seen * stroke.y * taper * widened;
 
-    vec3 base = paint.rgb * mix(1.0, 1.25, smoothstep(0.5, 1.0, t));
-    vec3 light = hair_light(base, along, n, view, gloss, 0.22 * (own - 0.5), stroke.z);
-    tone = vec4(finish(light), blended(paint.a * (1.0 - 0.7 * smoothstep(0.75, 1.0, t)) * min(1.0, 0.45 + 8.0 * t) / widened));
-    place = vec3(side, t, own);
+    vec3 base = paint.rgb * mix(1.0, 1.2, smoothstep(0.4, 1.0, t));
+    vec3 round = normalize(n + 0.45 * solid * side * sideways);
+    HairLight light = hair_lights(base, along, round, view, gloss, 0.16 * (own - 0.5), stroke.z);
+    dull = finish(light.body + 0.35 * light.shine);
+    bright = finish(light.body + 1.4 * light.shine);
+    float opacity = blended(paint.a * (1.0 - 0.7 * smoothstep(0.75, 1.0, t)) * min(1.0, 0.45 + 8.0 * t) / widened);
+    place = vec4(side, t, own, mix(opacity, clamp(2.5 * pixels / streaks, 0.15, 1.0), solid));
     gl_Position = view_projection * vec4(placed, 1.0);
+    vec4 nearer = view_projection * vec4(placed + view * lift.x * max(stroke.z - lift.y, 0.0), 1.0);
+    gl_Position.z = nearer.z / nearer.w * gl_Position.w;
 }

@@ -1,15 +1,10 @@
 from __future__ import annotations
 
 import json
-import os
 import re
 import shutil
-import signal
-import socket
 import subprocess
 import sys
-import threading
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -214,107 +209,3 @@ def test_all_benchmarks_but_the_one_that_draws_run_without_opengl(monkeypatch):
 
 def test_bench_names_the_benchmarks():
     assert "known: deform, fuzzy" in fail("bench", "nothing")
-
-
-def test_a_taken_port_is_one_clear_message():
-    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as taken:
-        taken.bind(("127.0.0.1", 0))
-        port = taken.getsockname()[1]
-        assert f"port {port}" in fail("serve", "--osc", f"127.0.0.1:{port}", "--duration", "1")
-
-
-@pytest.mark.parametrize(
-    "options", [["--osc", "7400"], ["--osc", "host:99999"], ["--duration", "0"], ["--view", "tv"], ["--look", "ginger"]]
-)
-def test_serve_usage(options):
-    fail("serve", *options, code=2)
-
-
-@pytest.mark.parametrize("kind", [signal.SIGINT, signal.SIGTERM])
-def test_serve_answers_and_ends_when_told(kind):
-    from pythonosc.osc_message import OscMessage
-    from pythonosc.osc_message_builder import OscMessageBuilder
-
-    server = subprocess.Popen(
-        [sys.executable, "-m", "agentface", "serve", "--osc", "127.0.0.1:0"],
-        stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=os.environ | {"PYTHONUNBUFFERED": "1"},
-    )  # fmt: skip
-    try:
-        watchdog = threading.Timer(120, server.kill)
-        watchdog.start()
-        place = re.search(r"amber listens to OSC on 127.0.0.1:(\d+)", server.stdout.readline())
-        with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as client:
-            client.connect(("127.0.0.1", int(place[1])))
-            client.settimeout(30)
-            client.send(OscMessageBuilder("/agentface/status").build().dgram)
-            assert json.loads(OscMessage(client.recv(65536)).params[0])["face"] == "amber"
-        server.send_signal(kind)
-        _, errors = server.communicate(timeout=30)
-        assert server.returncode == 0
-        assert errors == ""
-    finally:
-        watchdog.cancel()
-        server.kill()
-        server.wait()
-
-
-@pytest.mark.gl
-def test_serve_records_a_film(tmp_path):
-    import av
-
-    path = tmp_path / "film.mp4"
-    result = call(
-        "serve", "--osc", "127.0.0.1:0", "--record", path, "--duration", "0.6", "--fps", "10", "--size", "96x64"
-    )
-    assert result.exit_code == 0, result.output
-    with av.open(str(path)) as film:
-        times = [float(frame.time) for frame in film.decode(video=0)]
-    assert times[0] < 0.1
-    assert 0.2 < times[-1] < 0.6
-    assert times == sorted(set(times))
-
-
-@pytest.mark.gl
-def test_serve_films_and_shows_a_look(tmp_path, monkeypatch):
-    from agentface import Face
-
-    words = ("serve", "--osc", "127.0.0.1:0", "--look")
-    filmed = ("--record", tmp_path / "face-%05d.png", "--duration", "0.1", "--fps", "10", "--size", "96x64")
-    assert "'nobody'" in fail(*words, "nobody", *filmed)
-    assert not list(tmp_path.iterdir())
-    result = call(*words, "ginger", *filmed)
-    assert result.exit_code == 0, result.output
-    picture = pixels(tmp_path / "face-00000.png")
-    np.testing.assert_array_equal(picture, Face(look="ginger").render((96, 64), alpha=True))
-    assert (picture != Face().render((96, 64), alpha=True)).any()
-
-    shown = []
-    window = SimpleNamespace(run=lambda: None)
-    monkeypatch.setattr("agentface.commands.show.make_window", lambda face, look: shown.append(look) or window)
-    assert call(*words, "ginger", "--view", "window").exit_code == 0
-    assert shown == ["ginger"]
-
-
-@pytest.mark.gl
-def test_serve_films_every_frame_when_drawing_waits(tmp_path):
-    import av
-
-    path = tmp_path / "film.mp4"
-    result = call(
-        *("serve", "--osc", "127.0.0.1:0", "--record", path, "--every-frame"),
-        *("--duration", "1", "--fps", "20", "--size", "96x64"),
-    )
-    assert result.exit_code == 0, result.output
-    with av.open(str(path)) as film:
-        times = [float(frame.time) for frame in film.decode(video=0)]
-    assert 10 <= len(times) <= 20, "a busy machine may be late for a frame, but not for drawing"
-    assert times == sorted(set(times))
-
-
-def test_serve_refuses_a_film_that_cannot_be_written(tmp_path):
-    later = ("serve", "--osc", "127.0.0.1:0", "--every-frame")
-    assert "no folder" in fail(*later, "--record", tmp_path / "no" / "a.mp4")
-    assert "--record" in fail(*later, code=2)
-    assert "no folder" in fail("serve", "--osc", "127.0.0.1:0", "--record", tmp_path / "no" / "a.mp4")
-    assert ".mp4" in fail("serve", "--osc", "127.0.0.1:0", "--record", tmp_path / "a.avi")
-    assert "even" in fail("serve", "--osc", "127.0.0.1:0", "--record", tmp_path / "a.mp4", "--size", "95x64")

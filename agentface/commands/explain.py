@@ -19,7 +19,7 @@ def explain(
     twice = emotions.keys() & more.keys()
     if twice or not (emotions or more):
         raise click.UsageError("expected each emotion once, and at least one; for example --emotion happiness=0.8")
-    shown = make_face(face, deformer)
+    shown = make_face(face, deformer, compiled=False)
     shown.set_emotion(emotions | more, fade=0.0)
     explanation = shown.explain()
     if json_file is None:

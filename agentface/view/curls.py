@@ -11,7 +11,7 @@ from agentface.view.look import HairLook
 from agentface.view.ribbons import unit_rows
 from agentface.view.styles import REFERENCE_EYES, Amount, Style, knot_of
 
-_BUN_SHARE = 0.16
+_BUN_SHARE = 0.35
 
 
 def crop(roots: HairRoots, style: Style, amount: Amount, look: HairLook, rng: np.random.Generator) -> Growth:
@@ -30,16 +30,16 @@ def crop(roots: HairRoots, style: Style, amount: Amount, look: HairLook, rng: np
     points = roots.places[:, None] + n[:, None] * (height[:, None] * t)[..., None]
     points = points + x[:, None] * (side * np.cos(turn) + lean[:, :1] * t)[..., None]
     points = points + y[:, None] * (side * np.sin(turn) + lean[:, 1:] * t)[..., None]
-    paint = paints(look, np.full(count, 1.15), 0.85 * np.clip(roots.depth / 0.012, 0.25, 1.0), rng, 0.9)
+    paint = paints(look, np.full(count, 1.7), 1.0 * np.clip(roots.depth / 0.012, 0.25, 1.0), rng, 0.6)
     cover = (0.25 + 0.75 * layer[:, None]) * (0.4 + 0.6 * t)
     radii = amount.radius * (0.7 + 0.6 * rng.random(count)) * np.clip(short + 0.2, 0, 1)
-    return Growth(points, radii, paint, cover, layer, (roots.depth < 0.010).astype(float))
+    return Growth(points, radii, paint, cover, layer, np.ones(count))
 
 
-def bun(model: HeadModel, amount: Amount, look: HairLook, rng: np.random.Generator) -> Growth:
-    """Strands wound round a ball where tied hair ends."""
-    count, scale = round(_BUN_SHARE * amount.strands), model.landmarks.eye_separation / REFERENCE_EYES
-    t = np.linspace(0.0, 1.0, amount.points)
+def bun(model: HeadModel, amount: Amount, pieces: int, look: HairLook, rng: np.random.Generator) -> Growth:
+    """Locks of ``pieces`` pieces wound round a ball where tied hair ends."""
+    count, scale = round(_BUN_SHARE * amount.locks), model.landmarks.eye_separation / REFERENCE_EYES
+    t = np.linspace(0.0, 1.0, pieces + 1)
     layer = rng.random(count)
     # circles about axes near the one that points back, each at its own latitude
     axis = unit_rows(np.array([0.0, 0.25, -1.0]) + 0.28 * rng.normal(size=(count, 3)))
@@ -53,6 +53,6 @@ def bun(model: HeadModel, amount: Amount, look: HairLook, rng: np.random.Generat
     points = (flat * np.cos(turn))[..., None] * x[:, None] + (flat * np.sin(turn))[..., None] * y[:, None]
     points = points + back[..., None] * axis[:, None] + knot_of(model) - [0.0, 0.0, 0.010 * scale]
     paint = paints(look, np.ones(count), np.full(count, 0.95), rng, 0.7)
-    cover = np.repeat((0.35 + 0.65 * layer)[:, None], amount.points, axis=1)
-    radii = 1.2 * amount.radius * (0.7 + 0.6 * rng.random(count))
+    cover = np.repeat((0.35 + 0.65 * layer)[:, None], pieces + 1, axis=1)
+    radii = amount.width * (0.7 + 0.6 * rng.random(count))
     return Growth(points, radii, paint, cover, layer, np.zeros(count))

@@ -29,8 +29,15 @@ _GUIDES, _GUIDE_POINTS = 420, 60
 _GUIDE_SEED = 7
 _WAVE = 0.090
 """Metres from wave to wave of wavy hair."""
-_STRAY = 0.03
-"""The part of the strands that leave their lock."""
+_LOCKS_BEHIND = 0.004
+"""Metres behind the hairline where locks begin; single hairs stand before them."""
+_HAIRS_ELSEWHERE = 0.05
+_STRAY = 0.08
+"""The part of the single hairs that leave their lock."""
+_FULL = 0.050
+"""Metres of locks that are as wide as locks get."""
+_JOIN = 0.032
+"""Metres of single hairs that do not."""
 
 
 def grow(model: HeadModel, normals: Floats, look: HairLook, quality: str, rng: np.random.Generator) -> Strands:
@@ -39,7 +46,7 @@ def grow(model: HeadModel, normals: Floats, look: HairLook, quality: str, rng: n
     amount = style.amounts[quality]
     line = Hairline(model, look.hairline)
     if look.style == "cropped":
-        roots = HairRoots.drawn(model, normals, line, amount.strands, rng)
+        roots = HairRoots.drawn(model, normals, line, amount.hairs, rng)
         return crop(roots, style, amount, look, rng).strands(model)
     hull = Hull(model, ears=style.over_ears)
     # the guides are the same for every quality, so that they show the same hair
@@ -47,9 +54,12 @@ def grow(model: HeadModel, normals: Floats, look: HairLook, quality: str, rng: n
     thickness = style.thickness * look.volume * line.unit / REFERENCE_EYES
     guides = _guides(starts, flow_of(model, look), hull, style, thickness)
     locks = _Locks(starts, guides, lengths_of(model, look, guides), hull, style, thickness, parting_of(model, look))
-    growth = locks.grown(HairRoots.drawn(model, normals, line, amount.strands, rng), amount, look, rng)
+    roots = HairRoots.drawn(model, normals, line, amount.locks, rng, behind=_LOCKS_BEHIND)
+    growth = locks.grown(roots, amount, look, rng)
+    roots = HairRoots.drawn(model, normals, line, amount.hairs, rng, elsewhere=_HAIRS_ELSEWHERE)
+    growth = growth.joined(locks.grown(roots, amount, look, rng, single=True))
     if look.style == "bun":
-        growth = growth.joined(bun(model, amount, look, rng))
+        growth = growth.joined(bun(model, amount, growth.points.shape[1] - 1, look, rng))
     return growth.strands(model)
 
 
@@ -68,7 +78,7 @@ def _guides(starts: HairRoots, flow: Flow, hull: Hull, style: Style, thickness: 
 
 
 class _Locks:
-    """Strands that follow the guide nearest to their root."""
+    """Locks, and single hairs on them, that follow the guide nearest to their root."""
 
     def __init__(
         self,
@@ -83,14 +93,21 @@ class _Locks:
         self.starts, self.guides, self.lengths = starts, guides, lengths
         self.hull, self.style, self.thickness, self.parting = hull, style, thickness, parting
 
-    def grown(self, roots: HairRoots, amount: Amount, look: HairLook, rng: np.random.Generator) -> Growth:
-        """The strands of ``roots``."""
+    def grown(
+        self, roots: HairRoots, amount: Amount, look: HairLook, rng: np.random.Generator, *, single: bool = False
+    ) -> Growth:
+        """The locks of ``roots``, or ``single`` hairs outside of the locks."""
         count = len(roots)
         mine = self._nearest(roots.places)
         lock = np.random.default_rng(_GUIDE_SEED).random(_GUIDES)[mine]
-        layer, stray = rng.random(count), (rng.random(count) < _STRAY).astype(float)
-        t = np.linspace(0.0, 1.0, amount.points) ** 1.3  # they turn most near the root
-        along = (self.lengths[mine] * (0.84 + 0.20 * rng.random(count) ** 0.6))[:, None] * t
+        layer, stray = rng.random(count), single * (rng.random(count) < _STRAY).astype(float)
+        layer = 1.0 + 0.1 * layer if single else layer
+        # they turn most near the root, waves turn everywhere
+        t = np.linspace(0.0, 1.0, round(amount.points * (1 + 1.5 * look.curl))) ** (1.6 - 0.5 * look.curl)
+        cut = self.style.blunt + (1.02 - self.style.blunt) * rng.random(count) ** 0.6
+        along = (self.lengths[mine] * cut)[:, None] * t
+        if single:  # those of the hairline soon join the locks
+            along *= np.where(stray == 0, np.minimum(1.0, _JOIN / along[:, -1]), 1.0)[:, None]
         closing = self.style.clump * (0.5 + lock)[:, None] * np.clip((t - 0.15) / 0.85, 0, 1) ** 1.3
         points = self._followed(mine, along)
         points = points + (roots.places - self.starts.places[mine])[:, None] * (1 - closing)[..., None]
@@ -100,10 +117,12 @@ class _Locks:
             points = points + (0.006 * look.curl) * self._waves(points, along, lock)
             points[:, 1:] = self.hull.push_out(points[:, 1:], 0.0010)
         fine = np.clip(roots.depth / 0.012, 0.30, 1.0)
-        paint = paints(look, 0.92 + 0.24 * lock, 0.95 * np.clip(roots.depth / 0.010, 0.45, 1.0), rng, 0.6)
-        cover = (0.45 + 0.55 * layer[:, None] ** 0.7) * (0.72 + 0.28 * np.clip(along / 0.015, 0, 1))
-        radii = amount.radius * fine * (0.7 + 0.6 * rng.random(count)) * (1 - 0.5 * stray)
-        return Growth(points, radii, paint, cover, layer, np.maximum(stray, roots.depth < 0.007))
+        opacity = 0.95 * np.clip(roots.depth / 0.010, 0.30, 1.0)
+        paint = paints(look, 0.96 + 0.16 * lock, opacity, rng, 0.3, single=single)
+        cover = (0.65 + 0.35 * layer[:, None] ** 0.7) * (0.72 + 0.28 * np.clip(along / 0.015, 0, 1))
+        fine = fine if single else fine * np.clip(along[:, -1] / _FULL, 0.7, 1.0)
+        radii = (amount.radius if single else amount.width) * fine * (0.7 + 0.6 * rng.random(count))
+        return Growth(points, radii, paint, np.clip(cover, 0, 1), layer, np.full(count, float(single)))
 
     def _nearest(self, places: Doubles) -> np.typing.NDArray[np.intp]:
         """The nearest guide on the same side of the parting."""
@@ -122,7 +141,7 @@ class _Locks:
     def _layered(self, roots: HairRoots, points: Doubles, along: Doubles, layer: Doubles) -> Doubles:
         """Each strand at its own height in the hair, from its root on the skin."""
         # short hair cannot stand as high as long hair
-        most = np.minimum(self.thickness * np.clip(roots.depth / 0.016, 0.25, 1.0), 0.4 * along[:, -1])
+        most = np.minimum(self.thickness * np.clip(roots.depth / 0.016, 0.25, 1.0), 0.22 * along[:, -1])
         lifted = np.clip((along + 0.001) / self.style.rise, 0, 1) ** 0.6
         # most strands lie near the outside, so that no single one stands out of it
         height = 0.0008 + most[:, None] * (0.12 + 0.88 * layer[:, None] ** 0.35) * lifted
@@ -136,10 +155,10 @@ class _Locks:
         out = self.hull.outward(points)
         across = unit_rows(np.cross(np.gradient(points, axis=1), out))
         # neighbouring locks wave together
-        phase = 60.0 * points[:, 0, 0] + 45.0 * points[:, 0, 2] + 1.2 * lock
+        phase = 60.0 * points[:, 0, 0] + 45.0 * points[:, 0, 2] + 0.5 * lock
         turn = 2 * np.pi * along / _WAVE + phase[:, None]
         grown = np.clip(along / _WAVE, 0, 1)[..., None]
-        return np.asarray(grown * (across * np.sin(turn)[..., None] + 0.6 * out * np.cos(turn)[..., None]))
+        return np.asarray(grown * (across * np.sin(turn)[..., None] + 0.25 * out * np.cos(turn)[..., None]))
 
 
 def _smoothed(lines: Doubles, times: int) -> Doubles:

@@ -33,7 +33,7 @@ class Growth:
         return Growth(*(np.concatenate([getattr(self, f.name), getattr(other, f.name)]) for f in fields(self)))
 
     def strands(self, model: HeadModel) -> Strands:
-        """The outermost first, which hide the others before they are shaded; then those that blend."""
+        """Those that hide others, then those that blend, the outermost last."""
         order = np.argsort(np.where(self.faint > 0, 2 + self.layer, 1 - self.layer), kind="stable")
         points, radii, paint, cover = (
             field[order].astype(np.float32) for field in (self.points, self.radii, self.paint, self.cover)
@@ -42,10 +42,16 @@ class Growth:
         return Strands(points, anchors, radii, paint, cover, int((self.faint > 0).sum()))
 
 
-def paints(look: HairLook, tint: Doubles, opacity: Doubles, rng: np.random.Generator, spread: float) -> Doubles:
-    """``(N, 4)``: the hair's colour times ``tint``, each a little different by ``spread``; some are grey."""
+def paints(
+    look: HairLook, tint: Doubles, opacity: Doubles, rng: np.random.Generator, spread: float, *, single: bool = True
+) -> Doubles:
+    """``(N, 4)``: the hair's colour times ``tint``, each a little different by ``spread``.
+
+    Some hairs are grey where each is a ``single`` one; locks have some of it each.
+    """
     count = len(tint)
     shade = np.asarray(look.colour) * (tint * (1 + spread * (rng.random(count) - 0.5)))[:, None]
     pale = 0.7 * np.asarray(look.colour) + _GREY * (0.6 + 0.8 * rng.random((count, 1)))
-    grey = rng.random((count, 1)) < look.grey
-    return np.column_stack([np.where(grey, 0.35 * shade + 0.65 * pale, shade), opacity])
+    drawn = rng.random((count, 1))
+    grey = 0.65 * (drawn < look.grey) if single else 0.65 * look.grey * 2 * drawn
+    return np.column_stack([(1 - grey) * shade + grey * pale, opacity])

@@ -1,4 +1,4 @@
-"""Hair of the head: where it begins, where it is rooted, and the dark layer on the scalp below the strands."""
+"""Hair of the head: where it begins, where it is rooted, and what of the skin it hides."""
 
 from __future__ import annotations
 
@@ -7,11 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from agentface.anatomy.model import HeadModel
-from agentface.conventions import Doubles, Floats, Indices
-from agentface.view.anchored import Anchored
+from agentface.conventions import Doubles, Floats
 from agentface.view.hull import spread_over
 from agentface.view.look import HairLook
-from agentface.view.refine import refine, vertex_normals
 from agentface.view.ribbons import unit_rows
 
 # The hairline over the azimuth about the head's vertical axis: 0 the forehead, 180 the nape; heights over the eyes
@@ -24,7 +22,11 @@ _HEIGHT = (
 _AXIS_Z = -0.69
 _SOFT = 0.006
 """Metres over which hair grows denser behind the hairline."""
-_CAP_THICKNESS = {"cropped": 0.0018, "swept": 0.0010, "bob": 0.0010, "bun": 0.0010}
+_SHADE = {"cropped": 0.30, "swept": 0.45, "bob": 0.60, "bun": 0.35}
+_SHADE_REACH = 0.007
+"""Metres in which the shade of hair falls to a third."""
+_STRIP = 0.012
+"""Metres behind the hairline where single hairs are seen."""
 
 
 class Hairline:
@@ -63,18 +65,31 @@ class HairRoots:
 
     @classmethod
     def drawn(
-        cls, model: HeadModel, normals: Floats, line: Hairline, count: int, rng: np.random.Generator
+        cls,
+        model: HeadModel,
+        normals: Floats,
+        line: Hairline,
+        count: int,
+        rng: np.random.Generator,
+        *,
+        behind: float = 0.0,
+        elsewhere: float = 1.0,
     ) -> HairRoots:
-        """``count`` roots spread over the scalp, fewer and fewer towards the hairline."""
+        """At most ``count`` roots spread over the scalp, fewer and fewer towards the hairline.
+
+        None nearer than ``behind`` metres; behind the strip at the hairline only the part ``elsewhere`` of them.
+        """
         over = line.over(model)
         triangles = model.triangles[over[model.triangles].max(1) > -0.02]
-        drawn, weights = spread_over(model.vertices, triangles, 3 * count, rng)
+        drawn, weights = spread_over(model.vertices, triangles, round(3 * count / max(elsewhere, 0.3)), rng)
         corners = triangles[drawn]
         places = (model.vertices[corners] * weights[..., None]).sum(1)
         depth = line.behind(places)
         # a hairline is not a line
         depth += 0.0020 * _wave(places * 190.0) + 0.0012 * _wave(places * 520.0)
-        kept = np.flatnonzero(depth > _SOFT * (rng.random(len(depth)) ** 1.5 - 0.35))[:count]
+        grown = (depth > _SOFT * (rng.random(len(depth)) ** 1.5 - 0.35)) & (depth >= behind)
+        grown &= (depth < _STRIP) | (rng.random(len(depth)) < elsewhere)
+        kept = np.flatnonzero(grown)[:count]
         shown = unit_rows((normals[corners[kept]] * weights[kept][..., None]).sum(1))
         return cls(places[kept], shown, depth[kept])
 
@@ -93,34 +108,16 @@ def hidden(model: HeadModel, line: Hairline, look: HairLook) -> Doubles:
     return np.maximum(scalp, 0.9 * behind * (y < 0.6 * line.unit))
 
 
+def hair_shade(model: HeadModel, look: HairLook) -> Doubles:
+    """``(V,)`` 0..1: the part of the surroundings' light that hair keeps off the bare skin next to it."""
+    if look.style == "none":
+        return np.zeros(len(model.vertices))
+    line = Hairline(model, look.hairline)
+    before = np.maximum(-line.over(model), 0.0)
+    thick = min(look.volume * _SHADE[look.style], 1.0)
+    return np.asarray(np.maximum(thick * np.exp(-before / _SHADE_REACH), 0.5 * hidden(model, line, look)))
+
+
 def _wave(points: Doubles) -> Doubles:
     x, y, z = points.T
     return np.asarray(np.sin(x + 1.7 * np.sin(y)) * np.cos(z + 1.3 * np.sin(x)))
-
-
-def scalp_cap(model: HeadModel, line: Hairline, look: HairLook) -> Anchored:
-    """What one sees between the strands: the scalp refined and lifted, ending softly at the hairline.
-
-    Material: depth behind the hairline 0..1, ambient light, two spare.
-    """
-    over = line.over(model)
-    chosen = over[model.triangles].max(1) > -0.012
-    used, local = np.unique(model.triangles[chosen], return_inverse=True)
-    triangles: Indices = local.reshape(-1, 3).astype(np.int32)
-    all_normals = vertex_normals(model.vertices, model.triangles)
-    places, normals = model.vertices[used], all_normals[used]
-    light = model.shade[used, :1]
-    anchors = np.repeat(used.astype(np.int32)[:, None], 1 if look.style == "cropped" else 2, axis=1)
-    # the edge of short hair is seen, that of long hair lies below strands
-    for _ in range(2 if look.style == "cropped" else 1):
-        mesh = refine(triangles, len(places))
-        places = mesh.positions(places, normals)
-        normals = unit_rows(mesh.mean(normals)).astype(np.float32)
-        light, triangles = mesh.mean(light), mesh.triangles
-        anchors = np.concatenate([anchors[mesh.ends[:, 0]], anchors[mesh.ends[:, 1]]], axis=1)
-    depth = line.behind(places)
-    rise = 0.0003 + _CAP_THICKNESS[look.style] * np.clip(depth / 0.020, 0, 1)
-    lifted = places + normals * rise[:, None].astype(np.float32)
-    ones = np.ones(len(places))
-    material = np.column_stack([np.clip((depth + 0.001) / 0.016, 0, 1), np.clip(1.3 * light[:, 0], 0, 1), ones, ones])
-    return Anchored(lifted, vertex_normals(lifted, triangles), triangles, anchors, material.astype(np.float32))

@@ -7,18 +7,18 @@ from typing import Any
 import numpy as np
 
 from agentface.anatomy.model import HeadModel
-from agentface.view.anchored import AnchoredArray
+from agentface.conventions import Doubles, Floats
+from agentface.view.camera import Camera
+from agentface.view.cap import Cap, scalp_cap
 from agentface.view.grow import grow
-from agentface.view.hair import Hairline, scalp_cap
+from agentface.view.hair import Hairline
 from agentface.view.look import HairLook
 from agentface.view.refine import vertex_normals
 from agentface.view.strands import StrandArray
 
 _SEED = 20
-_STREAKS = {"fast": 1.6, "portrait": 1.7}
+_STREAKS = {"fast": 6.0, "portrait": 7.0}
 _NARROWEST = {"fast": 0.9, "portrait": 0.5}
-_OUTERMOST = {"fast": 0.5, "portrait": 0.75}
-"""The part of long strands that is drawn: what lies deeper is hidden by them."""
 _GLOSS = {"cropped": 0.25, "swept": 0.8, "bob": 0.9, "bun": 0.9}
 
 
@@ -28,23 +28,28 @@ class HeadHair:
     def __init__(self, context: Any, cap: Any, strand: Any, model: HeadModel, look: HairLook) -> None:
         self._context, self._program, self._model, self._look = context, strand, model, look
         mesh = scalp_cap(model, Hairline(model, look.hairline), look)
-        self._cap = AnchoredArray(context, cap, mesh, model.vertices)
+        self._cap = Cap(context, cap, mesh, model.vertices)
         self._strands: dict[str, StrandArray] = {}
         cap["hair_colour"].value = tuple(look.colour)
-        strand["hair_centre"].value = (0.0, 0.4 * model.landmarks.eye_separation, -0.012)
+        cap["coils"].value = float(look.style == "cropped")
+        self._centre = np.array([0.0, 0.4 * model.landmarks.eye_separation, -0.012])
+        strand["hair_centre"].value = tuple(self._centre)
         strand["gloss"].value = _GLOSS[look.style]
 
-    def draw_solid(self, quality: str) -> None:
-        """Draw what hides what is behind it: to be done without blending."""
-        strands = self._strands_for(quality)
+    def draw_solid(self, quality: str, camera: Camera, head: Floats) -> None:
+        """Draw what hides what is behind it, seen by ``camera`` with the head turned by ``head (4, 4)``."""
+        eye: Doubles = np.linalg.solve(head.astype(np.float64), np.array([*camera.eye, 1.0]))[:3]
         self._program["narrowest"].value = _NARROWEST[quality]
         self._program["streaks"].value = _STREAKS[quality]
-        strands.draw_solid(1.0 if self._look.style == "cropped" else _OUTERMOST[quality])
+        self._strands_for(quality).draw_solid(eye)
+        self._context.enable(self._context.CULL_FACE)
+        self._cap.draw_solid()
+        self._context.disable(self._context.CULL_FACE)
 
     def draw_soft(self, quality: str, onto: Any) -> None:
-        """Draw what blends, after everything solid, into the framebuffer ``onto``."""
+        """Draw what blends, after everything solid, into the framebuffer ``onto``; after :meth:`draw_solid`."""
         self._context.enable(self._context.CULL_FACE)
-        self._cap.draw()
+        self._cap.draw_soft()
         self._context.disable(self._context.CULL_FACE)
         onto.depth_mask = False  # a nearly clear hair hides nothing
         self._strands_for(quality).draw_fine()
@@ -55,5 +60,5 @@ class HeadHair:
             model = self._model
             normals = vertex_normals(model.vertices, model.triangles)
             strands = grow(model, normals, self._look, quality, np.random.default_rng(_SEED))
-            self._strands[quality] = StrandArray(self._context, self._program, strands, model.vertices)
+            self._strands[quality] = StrandArray(self._context, self._program, strands, model, self._centre)
         return self._strands[quality]

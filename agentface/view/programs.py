@@ -17,7 +17,7 @@ _SHADERS = {
     "ribbon": ("ribbon", "ribbon"),
     "strand": ("strand", "strand"),
     "lining": ("anchored", "part"),
-    "cap": ("anchored", "cap"),
+    "cap": ("cap", "cap"),
     "background": ("screen", "background"),
     "copy": ("screen", "copy"),
 }

@@ -12,9 +12,10 @@ from agentface.deform.geometry import FaceGeometry
 from agentface.view.anchored import AnchoredArray, eye_linings
 from agentface.view.brows import BrowLine, brow_hairs, lash_hairs
 from agentface.view.camera import Camera, named_view
+from agentface.view.complexion import complexion
 from agentface.view.context import Witness, make_current, open_context, shader_names
 from agentface.view.frame import pack_frame, pixels_a_metre, shadow_projection, unit
-from agentface.view.hair import Hairline, hidden
+from agentface.view.hair import Hairline, hair_shade, hidden
 from agentface.view.head_hair import HeadHair
 from agentface.view.lips import FineLips
 from agentface.view.look import Look, load_look
@@ -70,9 +71,7 @@ class Renderer:
         self._wrinkles = WrinkleAtlas(self.context, model, unit(self.look.lights.key.towards), rng)
         normals = vertex_normals(model.vertices, model.triangles)
         self._shadow = KeyShadow(self.context, self._programs.depth, model)
-        self._meshes = SkinMeshes(
-            self.context, model, lips, self._covered(), self._lit_at_rest(normals), textured=self._picture is not None
-        )
+        self._meshes = SkinMeshes(self.context, model, lips, self._dressed(normals))
         self._skins: dict[tuple[str, int], Skin] = {}
         self._mouth = Mouth(self.context, self._programs["part"], model)
         self._eyes = [Eyeball(self.context, self._programs["eye"], model, side) for side in SIDES]
@@ -151,7 +150,7 @@ class Renderer:
         self._clear(targets, alpha=alpha)
         context.enable_only(moderngl.DEPTH_TEST)
         if self._head_hair is not None:
-            self._head_hair.draw_solid(quality)
+            self._head_hair.draw_solid(quality, seen_from, geometry.head)
         self._draw_solids(geometry, self._skin(quality, pixels_a_metre(seen_from, targets.size)))
         context.enable_only(moderngl.DEPTH_TEST | moderngl.BLEND)
         context.blend_func = (
@@ -226,12 +225,20 @@ class Renderer:
         self._shadow.draw()
         return self._shadow.lit(model.vertices, normals, shadow_projection(lights))
 
-    def _covered(self) -> Floats:
+    def _dressed(self, normals: Floats) -> dict[str, Floats]:
+        """What the look makes of the skin's vertices."""
         hair, model = self.look.hair, self.model
         covered = 0.55 * hair.brow_density * BrowLine(model).density(model.vertices)
         if hair.style != "none":
             covered = np.maximum(covered, hidden(model, Hairline(model, hair.hairline), hair))
-        return np.asarray(np.clip(covered, 0, 1), np.float32)
+        dressed = {
+            "complexion": complexion(model, np.asarray(np.clip(covered, 0, 1), np.float32)),
+            "ambient": (model.shade[:, :1] * (1 - hair_shade(model, hair)[:, None])).astype(np.float32),
+            "lit_at_rest": self._lit_at_rest(normals),
+        }
+        if self._picture is not None:
+            dressed["picture"] = np.column_stack([model.uv, model.uv_cover])
+        return dressed
 
     def _targets_for(self, size: tuple[int, int], quality: str) -> Targets:
         key = checked_size(size), tier_named(quality).samples

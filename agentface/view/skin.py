@@ -11,7 +11,7 @@ from agentface.anatomy.model import HeadModel
 from agentface.conventions import Floats, Indices
 from agentface.deform.geometry import FaceGeometry
 from agentface.errors import InvalidValueError
-from agentface.view.complexion import blurred, complexion
+from agentface.view.complexion import blurred
 from agentface.view.lips import FineLips
 from agentface.view.neck import Neck
 from agentface.view.refine import Refined, refine, unrefined, vertex_normals
@@ -59,26 +59,23 @@ class SkinFields:
 
 
 class SkinMeshes:
-    """The skin's static buffers, as it is and finer; drawn where ``SkinFields`` has it."""
+    """The skin's static buffers, as it is and finer; drawn where ``SkinFields`` has it.
 
-    def __init__(
-        self, context: Any, model: HeadModel, lips: FineLips, covered: Floats, lit: Floats, *, textured: bool
-    ) -> None:
+    ``dressed``: those that the look makes, ``(V, 1..4)`` by the names of ``shaders/skin_place.glsl``.
+    """
+
+    def __init__(self, context: Any, model: HeadModel, lips: FineLips, dressed: dict[str, Floats]) -> None:
         self._context, self._model, self._lips = context, model, lips
         self._triangles = uncovered(model)
         normals = vertex_normals(model.vertices, model.triangles)
-        fields: tuple[tuple[str, Floats], ...] = (
-            ("rest", model.vertices),
-            ("soft_normal", blurred(normals, model.triangles, _BLUR)),
-            ("rest_normal", normals),
-            ("material", model.material),
-            ("complexion", complexion(model, covered)),
-            ("ambient", model.shade[:, :1]),
-            ("lit_at_rest", lit),
-        )
-        if textured:
-            fields += (("picture", np.column_stack([model.uv, model.uv_cover])),)
-        self._fields = [(name, field, lips.extended(field)) for name, field in fields]
+        fields = {
+            "rest": model.vertices,
+            "soft_normal": blurred(normals, model.triangles, _BLUR),
+            "rest_normal": normals,
+            "material": model.material,
+            **dressed,
+        }
+        self._fields = [(name, field, lips.extended(field)) for name, field in fields.items()]
 
     def coarse(self, programs: tuple[Any, Any]) -> Skin:
         """The skin as it is."""

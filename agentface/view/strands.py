@@ -7,12 +7,24 @@ from typing import Any
 
 import numpy as np
 
+from agentface.anatomy.model import HeadModel
 from agentface.conventions import Doubles, Floats, Indices
+from agentface.view.ribbons import unit_rows
+from agentface.view.visible import Chosen, on_near_side, unhidden
+
+_TURN_DEG, _PITCH_DEG = 12, 15
+_NEAR = 0.45
+"""Metres from the middle of the head."""
+_REACH = 0.8
+"""The part of its half width that a strand surely reaches to both sides."""
+_LIFT, _DEEP = 0.020, 0.6
+"""Metres that locks are drawn nearer over their cover, so that which of two lies outside stays the same on their way;
+the cover from which on."""
 
 
 @dataclass(frozen=True, slots=True)
 class Strands:
-    """Curves at rest: first those that hide what is behind them, the outermost first, then ``fine`` ones that blend.
+    """Curves at rest: first locks that hide what is behind them, then ``fine`` ones that blend.
 
     Attributes:
         points: ``(N, P, 3)`` float32 m.
@@ -36,8 +48,9 @@ class Strands:
 class StrandArray:
     """Strands on the GPU: static, lit at their points, drawn as ribbons that face the camera."""
 
-    def __init__(self, context: Any, program: Any, strands: Strands, skin: Floats) -> None:
-        self.program = program
+    def __init__(self, context: Any, program: Any, strands: Strands, model: HeadModel, centre: Doubles) -> None:
+        skin = model.vertices
+        self._context, self.program, self._strands, self._centre = context, program, strands, centre
         count, points = strands.points.shape[:2]
         offsets = strands.points - skin[strands.anchors][:, None]
         along = np.gradient(strands.points, axis=1)
@@ -49,25 +62,79 @@ class StrandArray:
         floats = np.repeat(rows.reshape(count * points, -1), 2, axis=0).astype(np.float32)
         sides = np.tile(np.array([-1.0, 1.0], np.float32), count * points)[:, None]
         anchors = np.repeat(strands.anchors, 2 * points).astype(np.int32)
-        layout = [
+        program["lift"].value = _LIFT, _DEEP
+        self._layout = [
             (context.buffer(anchors.tobytes()), "1i", "anchor"),
             (context.buffer(np.concatenate([floats, sides], axis=1).tobytes()), "3f 3f 3f 4f 1f",
              "offset", "along_rest", "stroke", "paint", "side"),
         ]  # fmt: skip
-        quads = (np.arange(count)[:, None] * 2 * points + 2 * np.arange(points - 1)).reshape(-1, 1)
-        triangles = (quads + np.array([0, 1, 2, 1, 3, 2])).reshape(-1, 3).astype(np.int32)
-        self.array = context.vertex_array(program, layout, context.buffer(triangles.tobytes()))
-        self.solid = 6 * (points - 1) * (count - strands.fine)
+        corners = skin[model.triangles]
+        solid = np.concatenate([skin, corners.mean(1), 0.5 * (corners[:, 0] + corners[:, 1])])
+        self._skin = (solid - centre).astype(np.float32)
+        self._arrays: dict[tuple[int, int, int] | None, tuple[Any, int]] = {}
+        self._drawn: tuple[Any, int] | None = None
 
-    def draw_solid(self, outermost: float) -> None:
-        """Draw those that hide what is behind them, where the skin is: the part ``outermost`` 0..1 of them."""
+    def draw_solid(self, eye: Doubles) -> None:
+        """Draw those that hide what is behind them, as seen by ``eye`` in the model's axes, where the skin is."""
+        array, solid = self._drawn = self._seen_from(_sector(eye - self._centre))
         self.program["solid"].value = 1.0
-        self.array.render(vertices=round(outermost * self.solid / 6) * 6)
+        if solid:
+            array.render(vertices=solid)
 
     def draw_fine(self) -> None:
-        """Draw those that blend."""
+        """Draw those that blend, as seen by the eye of the last ``draw_solid``."""
+        array, solid = self._drawn if self._drawn is not None else self._seen_from(None)
         self.program["solid"].value = 0.0
-        self.array.render(vertices=self.array.vertices - self.solid, first=self.solid)
+        if array.vertices > solid:
+            array.render(vertices=array.vertices - solid, first=solid)
+
+    def _seen_from(self, sector: tuple[int, int, int] | None) -> tuple[Any, int]:
+        """An array of what is seen from a sector, and how many of its indices are solid."""
+        if sector not in self._arrays:
+            strands, pieces = self._strands, self._strands.points.shape[1] - 1
+            chosen = np.arange(len(strands) * pieces)
+            if sector is not None:
+                chosen = self._chosen(_middle(sector))
+            edge = (len(strands) - strands.fine) * pieces
+            solid, fine = chosen[chosen < edge], np.sort(chosen[chosen >= edge])
+            indices = _ribbons(np.concatenate([solid, fine]), pieces)
+            array = self._context.vertex_array(self.program, self._layout, self._context.buffer(indices.tobytes()))
+            self._arrays[sector] = array, 6 * len(solid)
+        return self._arrays[sector]
+
+    def _chosen(self, eye: Doubles) -> Chosen:
+        """The pieces that ``eye``, from the head's middle, sees: the nearest first."""
+        strands, pieces, towards = self._strands, self._strands.points.shape[1] - 1, eye / np.linalg.norm(eye)
+        points = strands.points - self._centre.astype(np.float32)
+        near = on_near_side(points, towards)
+        points = points[near]
+        across = np.cross(np.gradient(points, axis=1), unit_rows(points.reshape(-1, 3)).reshape(points.shape) + towards)
+        across *= _REACH * strands.radii[near, None, None] / np.maximum(np.linalg.norm(across, axis=2), 1e-9)[..., None]
+        lift = _LIFT * np.maximum(strands.cover[near] - _DEEP, 0)
+        seen = unhidden(points, across.astype(np.float32), lift, self._skin, eye)
+        return np.asarray(near[seen // pieces] * pieces + seen % pieces)
+
+
+def _sector(arm: Doubles) -> tuple[int, int, int] | None:
+    """The turn, pitch and distance about which an eye stands; None for one so near that it sees all round."""
+    distance = float(np.linalg.norm(arm))
+    if distance < _NEAR:
+        return None
+    turn = round(float(np.degrees(np.arctan2(arm[0], arm[2]))) / _TURN_DEG)
+    pitch = round(float(np.degrees(np.arcsin(arm[1] / distance))) / _PITCH_DEG)
+    return turn % (360 // _TURN_DEG), pitch, round(2 * np.log2(distance))
+
+
+def _middle(sector: tuple[int, int, int]) -> Doubles:
+    turn, pitch = np.radians([sector[0] * _TURN_DEG, sector[1] * _PITCH_DEG])
+    towards = np.array([np.sin(turn) * np.cos(pitch), np.sin(pitch), np.cos(turn) * np.cos(pitch)])
+    return np.asarray(2.0 ** (0.5 * sector[2]) * towards)
+
+
+def _ribbons(chosen: Chosen, pieces: int) -> Indices:
+    """Two triangles for each of the pieces ``strand * pieces + piece``."""
+    first = 2 * (chosen // pieces * (pieces + 1) + chosen % pieces)
+    return np.asarray((first[:, None] + np.array([0, 1, 2, 1, 3, 2])).ravel().astype(np.int32))
 
 
 def nearest_vertices(points: Doubles, vertices: Floats) -> Indices:

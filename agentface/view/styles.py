@@ -23,11 +23,13 @@ Flow = Callable[[Doubles, float], Doubles]
 
 @dataclass(frozen=True, slots=True)
 class Amount:
-    """How finely a quality draws hair: strands, points of each, their half width in metres."""
+    """How finely a quality draws hair: locks and their half width in metres, hairs and theirs, points of each."""
 
-    strands: int
-    points: int
+    locks: int
+    width: float
+    hairs: int
     radius: float
+    points: int
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,8 +37,8 @@ class Style:
     """How a style grows.
 
     ``thickness`` of the hair and the length ``rise`` over which it gets there, metres; ``stiff`` 0..1 how slowly it
-    follows the flow, ``weight`` of its own, ``clump`` 0..1 how far a lock's tips come together, ``over_ears``
-    whether it lies over them.
+    follows the flow, ``weight`` of its own, ``clump`` 0..1 how far a lock's tips come together, ``blunt`` 0..1 how
+    long the shortest are, ``over_ears`` whether it lies over them.
     """
 
     thickness: float
@@ -44,24 +46,29 @@ class Style:
     stiff: float
     weight: float
     clump: float
+    blunt: float
     over_ears: bool
     amounts: dict[str, Amount]
 
 
 STYLES = {
     "cropped": Style(
-        0.006, 0.006, 0, 0, 0, False, {"fast": Amount(1500, 4, 0.00095), "portrait": Amount(11000, 6, 0.00034)}
+        0.006, 0.006, 0, 0, 0, 1.0, False,
+        {"fast": Amount(0, 0.0, 1500, 0.00055, 4), "portrait": Amount(0, 0.0, 5000, 0.00036, 6)},
     ),
     "swept": Style(
-        0.013, 0.022, 0.70, 0.03, 0.60, False, {"fast": Amount(900, 6, 0.0014), "portrait": Amount(4500, 9, 0.00048)}
+        0.013, 0.022, 0.70, 0.03, 0.35, 0.80, False,
+        {"fast": Amount(950, 0.0025, 200, 0.0007, 6), "portrait": Amount(2100, 0.0015, 600, 0.00040, 8)},
     ),
     "bob": Style(
-        0.014, 0.022, 0.72, 0.16, 0.35, True, {"fast": Amount(900, 11, 0.0017), "portrait": Amount(2300, 15, 0.00078)}
+        0.012, 0.040, 0.72, 0.16, 0.25, 0.98, True,
+        {"fast": Amount(400, 0.0038, 180, 0.0007, 8), "portrait": Amount(1000, 0.0022, 900, 0.00038, 10)},
     ),
     "bun": Style(
-        0.007, 0.060, 0.55, 0.0, 0.35, False, {"fast": Amount(900, 9, 0.0016), "portrait": Amount(2600, 14, 0.00066)}
+        0.007, 0.060, 0.55, 0.0, 0.35, 0.84, False,
+        {"fast": Amount(420, 0.0032, 200, 0.0007, 8), "portrait": Amount(900, 0.0022, 900, 0.00040, 11)},
     ),
-}
+}  # fmt: skip
 
 
 def parting_of(model: HeadModel, look: HairLook) -> float:
@@ -85,13 +92,16 @@ def lengths_of(model: HeadModel, look: HairLook, guides: Doubles) -> Doubles:
     unit = model.landmarks.eye_separation
     if look.style == "swept":  # long on top, short at the sides and the nape
         high = np.clip((guides[:, 0, 1] / unit - 0.55) / 0.8, 0, 1)
-        return np.asarray((0.012 + 0.058 * high) * look.length * unit / REFERENCE_EYES)
+        return np.asarray((0.015 + 0.055 * high) * look.length * unit / REFERENCE_EYES)
     if look.style == "bun":
         away = np.linalg.norm(guides - knot_of(model), axis=2)
         return np.asarray(np.maximum(away.argmin(1) * GUIDE_STEP, 0.012))
-    low = guides[:, :, 1] < look.length * float(model.landmarks["menton"][1])
-    first = np.where(low.any(1), low.argmax(1), guides.shape[1] - 1)
-    return np.asarray(np.maximum(first * GUIDE_STEP, 0.02))
+    drop = guides[:, :, 1] - look.length * float(model.landmarks["menton"][1])
+    below = drop < 0
+    last = np.clip(np.where(below.any(1), below.argmax(1), guides.shape[1] - 1), 1, None)
+    over, under = (np.take_along_axis(drop, (last - back)[:, None], axis=1)[:, 0] for back in (1, 0))
+    part = np.clip(over / np.maximum(over - under, 1e-6), 0, 1)
+    return np.asarray(np.maximum((last - 1 + part) * GUIDE_STEP, 0.02))
 
 
 def _falling(model: HeadModel, look: HairLook) -> Flow:
@@ -120,7 +130,7 @@ def _back(model: HeadModel, look: HairLook) -> Flow:
     def flow(at: Doubles, along: float) -> Doubles:
         high = np.clip(at[:, 1] / (1.4 * unit), 0, 1)
         aside = 0.35 * np.tanh((at[:, 0] - parting) / (0.4 * unit)) * high
-        return np.stack([aside, 0.15 * high - 0.75 * (1 - high), 0 * high - 1.0], axis=1)
+        return np.stack([aside, 0.15 * high - 1.0 * (1 - high), -0.45 - 0.55 * high], axis=1)
 
     return flow
 

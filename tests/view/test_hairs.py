@@ -4,13 +4,20 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from agentface.anatomy.model import load_model
+from agentface.deform.pipeline import GeometricDeformer
+from agentface.parameters import FacePose
+from agentface.view import strands as strands_module
 from agentface.view.brows import BrowLine, brow_hairs, lash_hairs
+from agentface.view.camera import named_view
+from agentface.view.cap import scalp_cap
 from agentface.view.grow import grow
-from agentface.view.hair import Hairline, scalp_cap
+from agentface.view.hair import Hairline, hair_shade
 from agentface.view.hull import Hull
 from agentface.view.look import load_look
 from agentface.view.refine import vertex_normals
+from agentface.view.renderer import Renderer
 from agentface.view.ribbons import roots_along, roots_in_front
+from agentface.view.visible import unhidden
 
 
 @pytest.fixture(scope="module", params=["amber", "onyx"])
@@ -143,7 +150,7 @@ def test_strands_grow_on_the_scalp_and_stay_out_of_head_and_face(grown, style, q
     assert not (before & lower & inner).any()
     assert np.isfinite(strands.points).all()
     assert 0 <= strands.cover.min() <= strands.cover.max() <= 1
-    assert 0 < strands.fine < len(strands)
+    assert 0 < strands.fine <= len(strands)
 
 
 def test_the_same_generator_gives_the_same_strands(grown):
@@ -152,6 +159,49 @@ def test_the_same_generator_gives_the_same_strands(grown):
     for name in ("points", "anchors", "radii", "paint", "cover"):
         assert getattr(first, name).tobytes() == getattr(again, name).tobytes()
     assert first.points.tobytes() != other.points.tobytes()
+
+
+@pytest.mark.gl
+@pytest.mark.parametrize("style", ["swept", "bob", "bun"])
+def test_hair_left_out_is_not_missed(grown, style, monkeypatch):
+    model, own, _, _ = grown
+    look = load_look(model)
+    look = look.model_copy(update={"hair": own.model_copy(update={"style": style})})
+    renderer = Renderer(model, look)
+    geometry = GeometricDeformer(model, compiled=False).deform(FacePose.of(jaw_open=0.6))
+    for yaw, pitch in ((0.1, 0.1), (-0.6, 0.1), (1.7, -0.1), (2.9, 0.2)):
+        camera = named_view(model, "front").orbited(yaw, pitch)
+        monkeypatch.undo()
+        chosen = renderer.render(geometry, (240, 260), camera).astype(int)
+        monkeypatch.setattr(strands_module, "_NEAR", 99.0)  # all of it
+        whole = renderer.render(geometry, (240, 260), camera).astype(int)
+        assert (np.abs(chosen - whole).max(2) > 24).mean() < 0.008
+
+
+def test_what_is_behind_much_hair_is_left_out_and_the_nearest_comes_first():
+    across, down = np.meshgrid(np.linspace(-0.1, 0.1, 81), np.linspace(-0.1, 0.1, 9))
+    flat = np.stack([across.T, down.T, np.zeros_like(across.T)], axis=2).astype(np.float32)  # a curtain
+    behind, before = flat[40:41] - np.float32([0, 0, 0.05]), flat[40:41] + np.float32([0, 0, 0.05])
+    beside = behind + np.float32([0.2, 0, 0])
+    points = np.concatenate([behind, flat, beside, before])
+    skin = np.full((1, 3), -9, np.float32)
+    for turn in (0.0, 0.1):
+        eye = np.array([np.sin(turn), 0.0, np.cos(turn)])
+        seen = unhidden(points, np.zeros_like(points), np.zeros(points.shape[:2], np.float32), skin, eye) // 8
+        assert seen[0] == 83
+        assert set(range(1, 84)) <= set(seen)
+        assert (seen == 0).sum() <= 4  # the ends of the curtain hide nothing
+    assert not len(unhidden(points[:0], points[:0], points[:0, :, 0], skin, eye))
+
+
+def test_hair_shades_the_skin_next_to_it(grown):
+    model, look, _, _ = grown
+    shade = hair_shade(model, look)
+    assert 0 <= shade.min() <= shade.max() <= 1
+    behind = Hairline(model, look.hairline).over(model)
+    face = (model.vertices[:, 2] > 0.02) & (behind < 0)
+    assert shade[face & (behind > -0.004)].min() > 3 * shade[face & (behind < -0.02)].max()
+    assert not hair_shade(model, look.model_copy(update={"style": "none"})).any()
 
 
 @settings(max_examples=20)

@@ -2,15 +2,32 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from numba import njit
 
-from agentface.conventions import Floats
+from agentface.conventions import Floats, Indices
 from agentface.deform.lip_surface import COLUMNS, ROWS
 from agentface.deform.lips import LipTables
 
 _CONTROLS = COLUMNS * ROWS
 _ZERO = np.float32(0.0)
+
+
+@njit(cache=True, nogil=True, error_model="numpy", inline="always")
+def _mean(controls: Indices, weights: Floats, row: int, count: int, moved: Floats) -> tuple[Any, Any, Any]:
+    """The movements ``moved (C, 3)`` of a row of ``controls (N, K)``, by ``weights (N, K)``.
+
+    ``count`` is K, which the compiler has to know to unroll the loop.
+    """
+    x, y, z = _ZERO, _ZERO, _ZERO
+    for j in range(count):
+        i, weight = controls[row, j], weights[row, j]
+        x += weight * moved[i, 0]
+        y += weight * moved[i, 1]
+        z += weight * moved[i, 2]
+    return x, y, z
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
@@ -35,23 +52,13 @@ def contract(tables: LipTables, values: Floats, points: Floats) -> None:
         moved[i, 0], moved[i, 1], moved[i, 2] = across, up, ahead
     for k in range(tables.rim.shape[0]):
         row = tables.rim[k]
-        x, y, z = _ZERO, _ZERO, _ZERO
-        for j in range(16):
-            i, weight = tables.controls[row, j], tables.weight[row, j]
-            x += weight * moved[i, 0]
-            y += weight * moved[i, 1]
-            z += weight * moved[i, 2]
+        x, y, z = _mean(tables.controls, tables.weight, row, 16, moved)
         vertex = tables.patch[row]
         points[vertex, 0] += x
         points[vertex, 1] += y
         points[vertex, 2] += z
     for k in range(tables.skirt.shape[0]):
-        x, y, z = _ZERO, _ZERO, _ZERO
-        for j in range(4):
-            i, weight = tables.skirt_index[k, j], tables.skirt_weight[k, j]
-            x += weight * moved[i, 0]
-            y += weight * moved[i, 1]
-            z += weight * moved[i, 2]
+        x, y, z = _mean(tables.skirt_index, tables.skirt_weight, k, 4, moved)
         vertex = tables.skirt[k]
         points[vertex, 0] += x
         points[vertex, 1] += y
@@ -72,12 +79,7 @@ def surface(tables: LipTables, points: Floats) -> None:
         moved[i, 1] = points[start + i, 1] - tables.control_rest[i, 1]
         moved[i, 2] = points[start + i, 2] - tables.control_rest[i, 2]
     for row in range(tables.patch.shape[0]):
-        x, y, z = _ZERO, _ZERO, _ZERO
-        for j in range(16):
-            i, weight = tables.controls[row, j], tables.weight[row, j]
-            x += weight * moved[i, 0]
-            y += weight * moved[i, 1]
-            z += weight * moved[i, 2]
+        x, y, z = _mean(tables.controls, tables.weight, row, 16, moved)
         vertex, blend = tables.patch[row], tables.blend[row]
         points[vertex, 0] += blend * (tables.rest[row, 0] + x - points[vertex, 0])
         points[vertex, 1] += blend * (tables.rest[row, 1] + y - points[vertex, 1])

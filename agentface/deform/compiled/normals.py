@@ -20,6 +20,14 @@ def vertex_normals(vertices: Floats, triangles: Indices, out: Floats) -> None:
         out[vertex, 0] = _ZERO
         out[vertex, 1] = _ZERO
         out[vertex, 2] = _ZERO
+    add_areas(vertices, triangles, out)
+    for vertex in range(out.shape[0]):
+        make_unit(out, vertex)
+
+
+@njit(cache=True, fastmath=True, nogil=True, error_model="numpy")
+def add_areas(vertices: Floats, triangles: Indices, out: Floats) -> None:
+    """Add to each corner's row of ``out (V, 3)`` its triangles' normals, as long as twice their areas, m^2."""
     for triangle in range(triangles.shape[0]):
         a, b, c = triangles[triangle, 0], triangles[triangle, 1], triangles[triangle, 2]
         x, y, z = vertices[a, 0], vertices[a, 1], vertices[a, 2]
@@ -30,9 +38,13 @@ def vertex_normals(vertices: Floats, triangles: Indices, out: Floats) -> None:
             out[corner, 0] += nx
             out[corner, 1] += ny
             out[corner, 2] += nz
-    for vertex in range(out.shape[0]):
-        square = out[vertex, 0] ** 2 + out[vertex, 1] ** 2 + out[vertex, 2] ** 2
-        scale = _ONE / math.sqrt(square) if square > _SMALLEST else _ZERO
-        out[vertex, 0] *= scale
-        out[vertex, 1] *= scale
-        out[vertex, 2] *= scale
+
+
+@njit(cache=True, fastmath=True, nogil=True, error_model="numpy")
+def make_unit(out: Floats, vertex: int) -> None:
+    """Scale a row of ``out (V, 3)`` to length 1; one too short for that becomes zero."""
+    square = out[vertex, 0] ** 2 + out[vertex, 1] ** 2 + out[vertex, 2] ** 2
+    scale = _ONE / math.sqrt(square) if square > _SMALLEST else _ZERO
+    out[vertex, 0] *= scale
+    out[vertex, 1] *= scale
+    out[vertex, 2] *= scale
