@@ -57,3 +57,8 @@ float glint(vec3 n, vec3 l, vec3 view, float n_v, float rough, float f0) {
     float n_l = max(dot(n, l), 0.0);
     return PI * n_l * ggx(max(dot(n, h), 0.0), rough) * visibility(n_l, n_v, 0.9 * rough) * fresnel(f0, max(dot(view, h), 0.0));
 }
+
+// How much of a light without a shadow of its own arrives: what lies round about hides what it cannot see itself.
+float unhidden(vec3 soft, vec3 l) {
+    return clamp(2.5 * dot(soft, l) + 0.4, 0.0, 1.0);
+}

@@ -24,11 +24,11 @@ vec3 enamel() {
 void main() {
     vec3 view = normalize(eye_point.xyz - position), n = normalize(normal);
     n = dot(n, view) < 0.0 ? -n : n;
-    vec4 fine = noise(rest_position * 60.0), grain = noise(rest_position * 210.0);
+    vec4 grain = noise(rest_position * 150.0);
     float tongue = matter.z, groove = exp(-pow(rest_position.x / 0.0016, 2.0));
     n = normalize(n + (0.05 * matter.x + 0.12 * matter.y + 0.30 * tongue) * (grain.bag - 0.5));
     vec3 albedo = matter.x * enamel() + matter.y * vec3(0.52, 0.20, 0.19) + tongue * vec3(0.54, 0.20, 0.19) * (1.0 - 0.25 * groove);
-    albedo *= mix(0.88 + 0.24 * fine.r, 0.97 + 0.06 * fine.r, matter.x);
+    albedo *= mix(0.88 + 0.24 * grain.r, 0.97 + 0.06 * grain.r, matter.x);
     float rough = mix(0.34, 0.20, matter.x);
     float depth = smoothstep(-0.046, 0.002, rest_position.z - mouth_front);
     float reach = mix(0.08, 1.25, depth * depth) * mouth_light;

@@ -1,5 +1,6 @@
 #version 330 core
 // Skin lit by vertex; wrinkles and grain by pixel.
+#include "relief.glsl"
 uniform sampler2D wrinkle_atlas;
 in vec3 body;
 in vec2 atlas;
@@ -12,7 +13,7 @@ out vec4 colour;
 const vec3 WARM = vec3(0.75, 1.0, 1.1);  // red light gets round a wrinkle through the skin
 
 void main() {
-    float change = 2.0 * texture(wrinkle_atlas, atlas).a - 1.0;
+    float change = relief(texture(wrinkle_atlas, atlas)).a;
 #ifdef TEXTURED
     vec3 smooth_skin = finish(painted(body));
 #else

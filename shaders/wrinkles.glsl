@@ -1,6 +1,7 @@
 // Wrinkles finer than the mesh; the atlas is written by agentface/view/wrinkles.py.
 #include "atlas.glsl"
-// signed roots of the slopes to the face's left and up, how near a crease is, half of what it makes of the key light
+#include "relief.glsl"
+// signed roots of the slopes to the face's left and up, how near a crease is, what that makes of the picture at rest
 uniform sampler2D wrinkle_atlas;
 
 const float STEEPEST = 2.0;       // the slope whose root is 1
@@ -14,8 +15,8 @@ float wrinkle_shade(vec3 n, vec4 raised, vec3 l) {
 
 // The normal of the skin with its wrinkles: Mikkelsen's surface gradient (2010). w: the crease.
 vec4 wrinkled_normal(vec3 n, vec3 rest, vec2 at) {
-    vec3 texel = texture(wrinkle_atlas, at).rgb;
-    vec2 root = 2.0 * texel.rg - 1.0, slope = STEEPEST * root * abs(root);
+    vec3 texel = relief(texture(wrinkle_atlas, at)).rgb;
+    vec2 slope = STEEPEST * texel.rg * abs(texel.rg);
     vec3 rise = mat3(head) * vec3(slope.x * normalize(vec2(rest.z, -rest.x)), slope.y).xzy;
     return vec4(normalize(n - rise + n * dot(n, rise)), texel.b);
 }

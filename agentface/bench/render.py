@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from agentface.parameters import FacePose
 
 SIZES = ((640, 480), (1280, 720))
+_IN_A_ROW = 5
 STAGES = ("deform", "upload", "draw", "readback")
 
 
@@ -33,7 +34,7 @@ def run(model: HeadModel | None = None, rounds: int = 15, sizes: tuple[tuple[int
 
     For each quality and size: ``deform``, from a pose to vertices; ``upload``, of what changes with the frame;
     ``draw``, all passes; ``readback``, to an array; the GPU has done its work before and after each. ``frame`` is all
-    that in one go, as a program calls it, ``frames_hz`` how many of them a second has. ``floor`` is clearing a picture
+    that in one go, frame after frame as a program calls it, ``frames_hz`` how many of them a second has. ``floor`` is clearing a picture
     of the size and reading it back. The expression changes from frame to frame; one round before the first is not
     counted. Raises GraphicsError where there is no OpenGL.
     """
@@ -79,9 +80,13 @@ class _Renderer(Renderer):
 
     uploaded = False
 
-    def upload(self, geometry: FaceGeometry) -> None:
+    def upload_skin(self, geometry: FaceGeometry) -> None:
         if not self.uploaded:
-            super().upload(geometry)
+            super().upload_skin(geometry)
+
+    def upload_wrinkles(self, geometry: FaceGeometry) -> None:
+        if not self.uploaded:
+            super().upload_wrinkles(geometry)
 
 
 class _Stages:
@@ -125,16 +130,18 @@ def _frame(
     with stages.stage(f"{group}.deform"):
         geometry = deformer.deform(next(poses))
     with stages.stage(f"{group}.upload"):
-        renderer.upload(geometry)
+        renderer.upload_skin(geometry)
+        renderer.upload_wrinkles(geometry)
     renderer.uploaded = True
     with stages.stage(f"{group}.draw"):
         renderer.draw(geometry, screen, "front", quality)
     renderer.uploaded = False
     with stages.stage(f"{group}.readback"):
         _read(screen)
-    with stages.stage(f"{group}.frame"):
-        renderer.draw(deformer.deform(next(poses)), screen, "front", quality)
-        _read(screen)
+    for _ in range(_IN_A_ROW):
+        with stages.stage(f"{group}.frame"):
+            renderer.draw(deformer.deform(next(poses)), screen, "front", quality)
+            _read(screen)
 
 
 def _floor(screen: Targets, stages: _Stages) -> None:

@@ -59,6 +59,7 @@ class Renderer:
         self.context = context if context is not None else open_context()
         make_current(self.context)
         self._witness = Witness(self.context)
+        self._aside = self.context.framebuffer([self.context.renderbuffer((1, 1), 4)])
         self._targets: dict[tuple[tuple[int, int], int], Targets] = {}
         self._frame = self.context.buffer(reserve=_FRAME_BYTES)
         rng = np.random.default_rng(_SEED)
@@ -137,21 +138,27 @@ class Renderer:
         seen_from = named_view(self.model, camera) if isinstance(camera, str) else camera
         self._frame.write(pack_frame(seen_from, targets.size, geometry.head, self.look.lights))
         self._frame.bind_to_uniform_block(FRAME_BINDING)
-        self.upload(geometry)
+        self.upload_skin(geometry)
         self._fields.texture.use(0)
         self._noise.use(1)
         self._wrinkles.texture.use(3)
         if self._picture is not None:
             self._picture.use(4)
         if tier.fine:
-            self._fields.update_lips(geometry)
             self._shadow.draw()
         self._shadow.use(2)
         self._clear(targets, alpha=alpha)
         context.enable_only(moderngl.DEPTH_TEST)
         if self._head_hair is not None:
             self._head_hair.draw_solid(quality, seen_from, geometry.head)
-        self._draw_solids(geometry, self._skin(quality, pixels_a_metre(seen_from, targets.size)))
+            self._begin(targets)
+        self.upload_wrinkles(geometry)
+        if tier.fine:
+            self._fields.update_lips(geometry)
+        self._programs.set({"mouth_light": self._mouth.light(geometry)})
+        self._skin(quality, pixels_a_metre(seen_from, targets.size)).draw(wrinkled=self._wrinkled)
+        self._begin(targets)
+        self._draw_solids(geometry)
         context.enable_only(moderngl.DEPTH_TEST | moderngl.BLEND)
         context.blend_func = (
             moderngl.SRC_ALPHA,
@@ -171,16 +178,22 @@ class Renderer:
             targets.light.use(0)
             self._screens["copy"].render(moderngl.TRIANGLES, 3)
 
-    def upload(self, geometry: FaceGeometry) -> None:
-        """Hand to the GPU what changes from frame to frame; ``draw`` does it itself."""
+    def upload_skin(self, geometry: FaceGeometry) -> None:
+        """Hand the skin of the frame to the GPU; ``draw`` does it itself."""
         self._fields.update(geometry)
+
+    def upload_wrinkles(self, geometry: FaceGeometry) -> None:
+        """Hand its wrinkles to the GPU; ``draw`` does it itself."""
         self._wrinkled = self._wrinkles.update(geometry.wrinkle_levels)
 
-    def _draw_solids(self, geometry: FaceGeometry, skin: Skin) -> None:
-        self._programs.set({"mouth_light": self._mouth.light(geometry)})
-        skin.draw(wrinkled=self._wrinkled)
-        self._mouth.draw(geometry)
+    def _begin(self, targets: Targets) -> None:
+        """Let a software driver begin with what it has been told: it waits until another picture is drawn into."""
+        self._aside.clear()
+        targets.scene.use()
+
+    def _draw_solids(self, geometry: FaceGeometry) -> None:
         self.context.enable(self.context.CULL_FACE)
+        self._mouth.draw(geometry)
         self._shirt.draw(np.eye(4, dtype=np.float32))
         self._programs["lining"]["mouth_light"].value = 1.0
         for lining in self._linings:
@@ -197,11 +210,14 @@ class Renderer:
             self._programs["background"]["aspect"].value = targets.size[0] / targets.size[1]
             self._screens["background"].render(moderngl.TRIANGLES, 3)
             targets.painted = True
-        targets.scene.use()
-        targets.scene.clear(0.0, 0.0, 0.0, 0.0)
-        if not alpha:
+        if alpha:
+            targets.scene.clear(0.0, 0.0, 0.0, 0.0)
+        else:
             self.context.copy_framebuffer(targets.scene, targets.backdrop)
-            targets.scene.use()
+            targets.scene.color_mask = (False,) * 4
+            targets.scene.clear()  # depth alone
+            targets.scene.color_mask = (True,) * 4
+        targets.scene.use()
 
     def _skin(self, quality: str, pixels_a_metre: float) -> Skin:
         """The skin of a quality, cut finely enough where a metre is so many pixels."""

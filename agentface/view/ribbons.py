@@ -10,7 +10,7 @@ import numpy as np
 from agentface.conventions import Doubles, Floats, Indices
 
 _AROUND = 0.004  # m, how far round the places triangles are looked at
-_POINTS = 5
+_POINTS = 4
 
 
 @dataclass(frozen=True, slots=True)

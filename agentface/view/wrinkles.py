@@ -2,78 +2,26 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
 from agentface.anatomy.model import HeadModel
-from agentface.anatomy.trains import relief
-from agentface.anatomy.wrinkles import PlacedTrain
-from agentface.conventions import Bytes, Doubles, Floats, Indices
-from agentface.view.context import compile_program
-from agentface.view.refine import vertex_normals
+from agentface.conventions import Doubles, Floats
+from agentface.view.reliefs import SIDE, Patch, Relief, patches
 
-SIDE = 512
-STEEPEST = 2.0
-"""The slope whose root is 1, as in ``shaders/wrinkles.glsl``."""
 _BELOW, _ABOVE = 0.35, 0.3  # eye separations beyond chin and hairline
-_LOWEST = 2e-6  # m
-_AZIMUTH = 1.35  # rad, to both sides of the middle: ATLAS_AZIMUTH of shaders/atlas.glsl
-_CREASE_SHADE = 0.5  # of the light that the bottom of a crease misses: CREASE_SHADE there
-_FAR_ROUND = 2.2  # rad; triangles beyond would cross the atlas where the azimuth jumps
-_GRAIN = 0.06  # of the light
-_GAMMA = 0.48  # from light to the picture, about
-_FLIPPED = np.array([-1, 1, 1], np.float32)
+_EVEN = 128  # the byte of a smooth skin
+_GRAIN = 4.0  # bytes
 _BORDER = 40  # texels over which the grain ends
-
-
-@dataclass(frozen=True, slots=True)
-class Patch:
-    """One train on the atlas at full contraction.
-
-    Attributes:
-        rows, columns: what it covers, ``h`` by ``w`` texels.
-        heights: ``(h, w)`` m.
-        slopes: ``(h, w, 2)`` signed roots of the slopes to the face's left and up, as parts of the steepest.
-        creases: ``(h, w)`` 0..1.
-        normals: ``(h, w, 3)`` of the smooth skin.
-    """
-
-    rows: slice
-    columns: slice
-    heights: Floats
-    slopes: Floats
-    creases: Floats
-    normals: Floats
-
-    def mirrored(self) -> Patch:
-        """The same train of the other side."""
-        columns = slice(SIDE - self.columns.stop, SIDE - self.columns.start)
-        heights, slopes, creases, normals = (
-            np.ascontiguousarray(image[:, ::-1]) for image in (self.heights, self.slopes, self.creases, self.normals)
-        )
-        return Patch(self.rows, columns, heights, slopes * _FLIPPED[:2], creases, normals * _FLIPPED)
-
-    def shade(self, towards: Doubles) -> Floats:
-        """``(h, w)``: by how much its slopes change wrapped light from a direction, as a part of that light."""
-        azimuth = _azimuths()[self.columns]
-        slope = STEEPEST * self.slopes * np.abs(self.slopes)
-        along = np.cos(azimuth) * towards[0] - np.sin(azimuth) * towards[2]
-        leftward = np.cos(azimuth) * self.normals[..., 0] - np.sin(azimuth) * self.normals[..., 2]
-        facing = self.normals @ towards
-        risen = slope[..., 0] * (along - leftward * facing) + slope[..., 1] * (
-            towards[1] - self.normals[..., 1] * facing
-        )
-        return np.asarray(-risen / (np.maximum(facing, -0.2) + 0.8), np.float32)
 
 
 class WrinkleAtlas:
     """The texture ``wrinkle_atlas`` of ``shaders/wrinkles.glsl``.
 
-    ``heights (S, S)`` are those of the frame in metres, ``relief (S, S, 4)`` its slopes, the change of the key light
-    and the creases.
+    ``heights (S, S)`` are those of the frame in metres, ``texels (S, S, 4)`` its bytes, ``height`` the metres between
+    which the atlas lies.
 
     Args:
         towards_key: ``(3,)`` unit vector to the key light, as the face at rest sees it.
@@ -86,16 +34,15 @@ class WrinkleAtlas:
             float(at["menton"][1]) - _BELOW * at.eye_separation,
             float(at["hairline_middle"][1]) + _ABOVE * at.eye_separation,
         )
-        self.patches = _patches(model, *_layers(context, model, self.height), self.height)
-        self._reliefs = [
-            np.concatenate([patch.slopes, patch.shade(towards_key)[..., None]], axis=2) for patch in self.patches
-        ]
+        self.patches = patches(context, model, self.height)
+        self._reliefs = [patch.texels(towards_key) for patch in self.patches]
         self.heights = np.zeros((SIDE, SIDE), np.float32)
-        self.relief = np.zeros((SIDE, SIDE, 4), np.float32)
-        self._grain = _grain(rng)
+        self._smooth = np.full((SIDE, SIDE, 4), _EVEN, np.int16)
+        self._smooth[..., 3] += _grain(rng)
+        self.texels = self._smooth.astype(np.uint8)
+        self._even = _pixels(self.texels.copy())
         self._levels = np.zeros(len(self.patches), np.float32)
-        self._dirty = (SIDE, 0)
-        self.texture = context.texture((SIDE, SIDE), 4, self._texels(slice(0, SIDE)).tobytes())
+        self.texture = context.texture((SIDE, SIDE), 4, self.texels.tobytes())
         self.texture.filter = (context.LINEAR, context.LINEAR)
         self.texture.repeat_x = self.texture.repeat_y = False
 
@@ -104,132 +51,46 @@ class WrinkleAtlas:
         if len(levels) != len(self.patches):
             levels = np.zeros(len(self.patches), np.float32)
         if not np.array_equal(levels, self._levels):
-            self._levels[:] = levels
-            self._combine()
+            self._combine(levels)
         return bool(levels.any())
 
-    def _combine(self) -> None:
-        risen = np.flatnonzero(self._levels > 0.0)
-        low = min((self.patches[i].rows.start for i in risen), default=SIDE)
-        high = max((self.patches[i].rows.stop for i in risen), default=0)
-        rows = slice(min(low, self._dirty[0]), max(high, self._dirty[1]))
-        self._dirty = low, high
-        self.heights[rows] = 0.0
-        self.relief[rows] = 0.0
-        for i in risen:
-            self._raise(self.patches[i], self._reliefs[i], self._levels[i])
-        if rows.start < rows.stop:
-            self.texture.write(self._texels(rows).tobytes(), viewport=(0, rows.start, SIDE, rows.stop - rows.start))
+    def _combine(self, levels: Floats) -> None:
+        pixels, touched = _pixels(self.texels), [slice(SIDE, 0)]
+        for patch in (patch for patch, level in zip(self.patches, self._levels, strict=True) if level > 0.0):
+            box = patch.rows, patch.columns
+            self.heights[box], pixels[box] = 0.0, self._even[box]
+            touched.append(patch.rows)
+        for patch, relief, level in zip(self.patches, self._reliefs, levels, strict=True):
+            if level > 0.0:
+                self._raise(patch, relief, level)
+                touched.append(patch.rows)
+        self._levels[:] = levels
+        low, high = min(rows.start for rows in touched), max(rows.stop for rows in touched)
+        if low < high:
+            self.texture.write(self.texels[low:high], viewport=(0, low, SIDE, high - low))
 
-    def _raise(self, patch: Patch, relief: Floats, level: np.float32) -> None:
-        """Let the higher of two trains stand, with the darker of their creases."""
+    def _raise(self, patch: Patch, relief: Relief, level: np.float32) -> None:
+        """Let the higher of two trains stand."""
         box = patch.rows, patch.columns
-        heights, here = level * patch.heights, self.relief[box]
-        root = np.sqrt(level)
-        scaled = relief * np.array([root, root, level], np.float32)
-        np.copyto(here[..., :3], scaled, where=(heights > self.heights[box])[..., None])
-        np.maximum(self.heights[box], heights, out=self.heights[box])
-        np.maximum(here[..., 3], level * patch.creases, out=here[..., 3])
-
-    def _texels(self, rows: slice) -> Bytes:
-        """``(h, S, 4)`` bytes: slopes about 127.5, crease, half of what it makes of the picture."""
-        relief = self.relief[rows]
-        texels = np.empty_like(relief)
-        texels[..., :2] = 0.5 + 0.5 * relief[..., :2]
-        texels[..., 2] = relief[..., 3]
-        light = (1.0 + relief[..., 2]) * (1.0 - _CREASE_SHADE * relief[..., 3]) * (1.0 + self._grain[rows])
-        texels[..., 3] = 0.5 * np.maximum(light, 0.0) ** _GAMMA
-        return np.clip(255.0 * texels + 0.5, 0, 255).astype(np.uint8)
+        heights, here, root = level * patch.heights, self.heights[box], np.sqrt(level)
+        # in 256ths: whole numbers of two bytes take a quarter of the time of floats, long rows less than fours
+        scale = np.array([256 * root, 256 * root, 256 * level, 256 * level], np.int16)
+        raised = relief.reshape(len(relief), -1) * np.tile(scale, relief.shape[1])
+        raised >>= 8
+        raised = raised.reshape(relief.shape) + self._smooth[box]
+        np.copyto(_pixels(self.texels)[box], _pixels(raised.astype(np.uint8)), where=heights > here)
+        np.maximum(here, heights, out=here)
 
 
-def _azimuths() -> Doubles:
-    """``(S,)`` rad, of the atlas' columns."""
-    return np.asarray(_AZIMUTH * (2.0 * (np.arange(SIDE) + 0.5) / SIDE - 1.0))
+def _pixels(texels: npt.NDArray[np.uint8]) -> npt.NDArray[np.uint32]:
+    """``(h, w)``: the four bytes of each as one number, in the same memory."""
+    return texels.view(np.uint32)[..., 0]
 
 
-def _grain(rng: np.random.Generator) -> Floats:
-    """``(S, S)``: how uneven the skin is, a part of its light; even where the atlas ends."""
+def _grain(rng: np.random.Generator) -> Relief:
+    """``(S, S)``: how uneven the skin is; even where the atlas ends."""
     noise = rng.uniform(-1.0, 1.0, (SIDE, SIDE))
     for _ in range(2):
         noise = (0.5 * noise + 0.25 * np.roll(noise, 1, axis=0) + 0.25 * np.roll(noise, -1, axis=0)).T
     inside = np.clip(np.minimum(np.arange(SIDE), np.arange(SIDE)[::-1]) / _BORDER, 0.0, 1.0)
-    return np.asarray(_GRAIN * noise * inside * inside[:, None], np.float32)
-
-
-def _layers(context: Any, model: HeadModel, height: tuple[float, float]) -> tuple[Indices, Floats]:
-    """``(S, S)`` the triangle at each texel or -1, and ``(S, S, 3)`` the barycentric coordinates in it."""
-    program = compile_program(context, "atlas.vert.glsl", "atlas.frag.glsl")
-    program["atlas_height"].value = height
-    azimuth = np.arctan2(model.vertices[:, 0], model.vertices[:, 2])[model.triangles]
-    ahead = np.flatnonzero(np.abs(azimuth).max(axis=1) < _FAR_ROUND)
-    corners = np.tile(np.array([[1, 0], [0, 1], [0, 0]], np.float32), (len(ahead), 1))
-    rest = context.buffer(model.vertices[model.triangles[ahead].ravel()].tobytes())
-    layout = [(rest, "3f", "rest"), (context.buffer(corners.tobytes()), "2f", "corner")]
-    target = context.framebuffer(context.texture((SIDE, SIDE), 4, dtype="f4"), context.depth_renderbuffer((SIDE, SIDE)))
-    target.use()
-    target.clear(0.0, 0.0, 0.0, 0.0)
-    context.enable_only(context.DEPTH_TEST)
-    context.vertex_array(program, layout).render()
-    found = np.frombuffer(target.read(components=4, dtype="f4"), np.float32).reshape(SIDE, SIDE, 4)
-    target.release()
-    triangle = np.where(found[..., 3] > 0.5, ahead[np.round(found[..., 2]).astype(np.int32)], -1).astype(np.int32)
-    shares = np.concatenate([found[..., :2], 1.0 - found[..., 0:1] - found[..., 1:2]], axis=2)
-    return triangle, shares
-
-
-def _patches(model: HeadModel, triangle: Indices, shares: Floats, height: tuple[float, float]) -> list[Patch]:
-    covered = np.flatnonzero(triangle.ravel() >= 0)
-    triangles, shares = triangle.ravel()[covered], shares.reshape(-1, 3)[covered]
-    corners = model.triangles[triangles]
-    points = np.einsum("nc,ncx->nx", shares, model.vertices[corners])
-    normals = np.einsum("nc,ncx->nx", shares, vertex_normals(model.vertices, model.triangles)[corners])
-    patches: list[Patch] = []
-    for placed in model.trains:
-        if placed.name.endswith("_r"):  # the atlas is its own mirror image, and the left train comes first
-            patches.append(patches[-1].mirrored())
-            continue
-        near = np.flatnonzero(_touched(model, placed)[triangles])
-        reach = (shares[near] * placed.reach[corners[near]]).sum(axis=1)
-        raised = reach[:, None] * np.stack(relief(placed.train, points[near]), axis=1)
-        kept = raised[:, 0] > _LOWEST
-        at = near[kept]
-        patches.append(_patch(covered[at], raised[kept], np.hypot(points[at, 0], points[at, 2]), normals[at], height))
-    return patches
-
-
-def _touched(model: HeadModel, placed: PlacedTrain) -> npt.NDArray[np.bool_]:
-    """``(T,)`` true for the triangles that a train may raise: those round its vertices and their neighbours."""
-    distance, weight = placed.train.place(model.vertices)
-    length, width = placed.train.length, placed.train.length / placed.train.count
-    near = np.abs(distance - 0.5 * length) < 0.5 * length + width
-    raised = np.flatnonzero(near & (placed.reach * weight > 0.0))
-    beside = np.unique(model.triangles[np.isin(model.triangles, raised).any(axis=1)])
-    return np.asarray(np.isin(model.triangles, beside).any(axis=1))
-
-
-def _patch(where: Any, raised: Any, radius: Doubles, normals: Any, height: tuple[float, float]) -> Patch:
-    """From the texels ``where (N,)`` that are raised: heights and creases ``(N, 2)``, the rest of them."""
-    if not len(where):
-        where, raised, radius, normals = (np.zeros(shape) for shape in (1, (1, 2), 1, (1, 3)))
-        where, radius = where.astype(np.int64), radius + 1.0
-    row, column = np.divmod(where, SIDE)
-    rows, columns = _around(row), _around(column)
-    image = np.zeros((rows.stop - rows.start, columns.stop - columns.start, 6))
-    image[..., 2], image[..., 5] = radius.mean(), 1.0
-    image[row - rows.start, column - columns.start] = np.column_stack([raised, radius, normals])
-    relief, around = image[..., :2], image[..., 2]
-    for _ in range(2):  # along both axes: a foot as sharp as a texel would show the texels as steps
-        before, after = np.pad(relief, [(1, 0), (0, 0), (0, 0)])[:-1], np.pad(relief, [(0, 1), (0, 0), (0, 0)])[1:]
-        relief = (0.25 * before + 0.5 * relief + 0.25 * after).swapaxes(0, 1)
-    upward, leftward = np.gradient(relief[..., 0])
-    slopes = (
-        np.stack([leftward / (around * 2 * _AZIMUTH / SIDE), upward / ((height[1] - height[0]) / SIDE)], axis=2)
-        / STEEPEST
-    )
-    roots = np.sign(slopes) * np.sqrt(np.minimum(np.abs(slopes), 1.0))
-    relief, roots, normals = (np.ascontiguousarray(part, np.float32) for part in (relief, roots, image[..., 3:]))
-    return Patch(rows, columns, relief[..., 0], roots, relief[..., 1], normals)
-
-
-def _around(places: Any) -> slice:
-    return slice(max(int(places.min()) - 2, 0), min(int(places.max()) + 3, SIDE))
+    return np.asarray(np.round(_GRAIN * noise * inside * inside[:, None]), np.int16)

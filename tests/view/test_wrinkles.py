@@ -8,8 +8,8 @@ from agentface.anatomy.trains import heights
 from agentface.deform.geometry import FaceGeometry
 from agentface.view.camera import named_view
 from agentface.view.refine import vertex_normals
+from agentface.view.reliefs import SIDE, STEEPEST
 from agentface.view.renderer import Renderer
-from agentface.view.wrinkles import SIDE, STEEPEST
 from tests.heads import head_model
 
 pytestmark = pytest.mark.gl
@@ -88,14 +88,13 @@ def test_the_texture_holds_the_slopes_of_the_heights(renderer):
     atlas = renderer._wrinkles
     for levels in ({"forehead_medial": 0.5, "glabella": 1.0}, {"crows_feet": 0.7}):  # the first must be forgotten
         heights = spread(renderer, **levels)
-        slopes = STEEPEST * atlas.relief[..., 1] * np.abs(atlas.relief[..., 1])
+        root = (atlas.texels[..., 1].astype(float) - 128) / 127
         expected = np.gradient(heights, (atlas.height[1] - atlas.height[0]) / SIDE, axis=0)
-        assert np.median(np.abs(slopes - expected)[heights > 1e-5]) < 1e-3 < np.abs(expected).max()
-    texels = np.frombuffer(atlas.texture.read(), np.uint8).reshape(SIDE, SIDE, 4)
-    root = (texels[..., :2] / 255 - 0.5) * 2
-    np.testing.assert_allclose(root, atlas.relief[..., :2], atol=1 / 127)
-    np.testing.assert_allclose(texels[..., 2] / 255, atlas.relief[..., 3], atol=1 / 255)
-    assert np.abs(texels[heights == 0][..., 3].astype(int) - 127).max() < 8
+        gap = np.abs(STEEPEST * root * np.abs(root) - expected)[heights > 1e-5]
+        assert np.median(gap) < 0.005 < 0.1 < np.abs(expected).max()
+    shown = np.frombuffer(atlas.texture.read(), np.uint8).reshape(SIDE, SIDE, 4)
+    np.testing.assert_array_equal(shown, atlas.texels)
+    assert (shown[heights == 0][..., :3] == 128).all()
 
 
 def test_a_slope_towards_the_key_light_is_brighter(renderer):
