@@ -11,8 +11,6 @@ from itertools import cycle
 from statistics import median
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from agentface.deform.pipeline import GeometricDeformer
 from agentface.view.renderer import Renderer
 from agentface.view.targets import Targets
@@ -20,7 +18,6 @@ from agentface.view.tiers import QUALITIES
 
 if TYPE_CHECKING:
     from agentface.anatomy.model import HeadModel
-    from agentface.conventions import Bytes
     from agentface.deform.geometry import FaceGeometry
     from agentface.parameters import FacePose
 
@@ -34,9 +31,9 @@ def run(model: HeadModel | None = None, rounds: int = 15, sizes: tuple[tuple[int
 
     For each quality and size: ``deform``, from a pose to vertices; ``upload``, of what changes with the frame;
     ``draw``, all passes; ``readback``, to an array; the GPU has done its work before and after each. ``frame`` is all
-    that in one go, frame after frame as a program calls it, ``frames_hz`` how many of them a second has. ``floor`` is clearing a picture
-    of the size and reading it back. The expression changes from frame to frame; one round before the first is not
-    counted. Raises GraphicsError where there is no OpenGL.
+    that in one go, frame after frame as a program calls it, ``frames_hz`` how many of them a second has. ``floor`` is
+    clearing a picture of the size and reading it back. The expression changes from frame to frame; one round before
+    the first is not counted. Raises GraphicsError where there is no OpenGL.
     """
     if model is None:
         from agentface.anatomy.model import load_model
@@ -137,11 +134,11 @@ def _frame(
         renderer.draw(geometry, screen, "front", quality)
     renderer.uploaded = False
     with stages.stage(f"{group}.readback"):
-        _read(screen)
+        screen.read()
     for _ in range(_IN_A_ROW):
         with stages.stage(f"{group}.frame"):
             renderer.draw(deformer.deform(next(poses)), screen, "front", quality)
-            _read(screen)
+            screen.read()
 
 
 def _floor(screen: Targets, stages: _Stages) -> None:
@@ -149,16 +146,10 @@ def _floor(screen: Targets, stages: _Stages) -> None:
     with stages.stage(f"{group}.clear"):
         screen.picture.clear(0.5, 0.5, 0.5, 1.0)
     with stages.stage(f"{group}.readback"):
-        _read(screen)
+        screen.read()
     with stages.stage(f"{group}.frame"):
         screen.picture.clear(0.5, 0.5, 0.5, 1.0)
-        _read(screen)
-
-
-def _read(screen: Targets) -> Bytes:
-    width, height = screen.size
-    pixels = np.frombuffer(screen.picture.read(components=3, alignment=1), np.uint8)
-    return np.ascontiguousarray(pixels.reshape(height, width, 3)[::-1])
+        screen.read()
 
 
 def _poses() -> list[FacePose]:

@@ -10,10 +10,10 @@ from agentface.anatomy.model import HeadModel
 from agentface.conventions import Doubles, Floats
 from agentface.view.refine import unrefined
 
-_SIDE = 128
+_SIDE = 112
 _CLEARANCE = 0.0035
 _SOFTNESS = 0.0045
-_SLACK = 0.0016
+_SLACK = 0.0018
 
 
 class KeyShadow:
