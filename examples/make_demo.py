@@ -26,7 +26,7 @@ def draw_expressions(path: Path) -> None:
     for place, name in enumerate(("neutral", *EMOTIONS)):
         face.set_emotion({} if name == "neutral" else {name: 1.0}, fade=0.0)
         left, top = TILE * (place % 4), (TILE + LABEL) * (place // 4)
-        sheet.paste(Image.fromarray(face.render((TILE, TILE))), (left, top))
+        sheet.paste(Image.fromarray(face.render((TILE, TILE), quality="portrait")), (left, top))
         middle = (left + TILE / 2, top + TILE + LABEL / 2)
         pen.text(middle, name, "#e8e4dc", ImageFont.load_default(26), anchor="mm")
     sheet.save(path)

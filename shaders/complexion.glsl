@@ -7,9 +7,9 @@ uniform float mouth_front;  // z of the lips at rest
 uniform float mouth_light;  // how much light the lips let in
 
 const float HIDDEN = 0.875;   // of the skin, under dense hair
-const vec3 WRAP = vec3(0.36, 0.20, 0.14);  // how far light goes round the terminator, by channel
+const vec3 WRAP = vec3(0.27, 0.20, 0.16);  // how far light goes round the terminator, by channel
 const vec3 RIM_WRAP = vec3(0.1);
-const vec3 SCATTERED = vec3(0.75, 0.35, 0.20);  // how far light goes through the skin, by channel
+const vec3 SCATTERED = vec3(0.55, 0.38, 0.28);  // how far light goes through the skin, by channel
 const vec2 F0 = vec2(0.026, 0.036);  // of skin that is dry and moist
 
 // The skin's colour: tint is redness, eye socket, gloss, under the hair; blotches 0..1 is even at 0.5.

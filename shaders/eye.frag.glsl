@@ -26,7 +26,7 @@ void main() {
     float edge = length(local.xy), ri = length(at.xy) / iris_radius;
     float on_iris = smoothstep(iris_radius + 0.02, iris_radius - 0.03, edge) * step(0.0, local.z);
     vec2 spoke = at.xy / max(length(at.xy), 1e-4);
-    float fibres = 0.6 * noise(vec3(spoke * 0.55, 0.12 * ri)).r + 0.4 * noise(vec3(spoke * 1.7, 0.2 * ri)).g;
+    float fibres = 0.5 * noise(vec3(spoke * 1.1, 0.12 * ri)).r + 0.5 * noise(vec3(spoke * 3.1, 0.2 * ri)).g;
     vec3 iris = mix(iris_outer, iris_inner, smoothstep(0.35, 0.62, fibres)) * mix(1.2, 0.75, smoothstep(0.38, 0.9, ri));
     iris *= 1.0 - 0.8 * smoothstep(0.80, 1.02, ri);
     iris *= smoothstep(pupil_radius, pupil_radius + 0.06, ri);
@@ -50,7 +50,7 @@ void main() {
         behind += light_colour[i].rgb * 0.6 * (i == 0 ? caustic : 1.0);
         vec3 x = normalize(cross(vec3(0.0, 1.0, 0.0), l)), y = cross(l, x);
         vec2 b = vec2(dot(mirror, x), dot(mirror, y)), half_size = i == 0 ? vec2(0.20, 0.26) : vec2(0.12, 0.30);
-        vec2 box = smoothstep(half_size + 0.03, half_size - 0.03, abs(b));
+        vec2 box = smoothstep(half_size + 0.07, half_size - 0.07, abs(b));
         shine += light_colour[i].rgb * step(0.0, dot(mirror, l)) * box.x * box.y * (i == 0 ? 7.0 : 4.0);
     }
     shine += hemisphere(mirror) * 0.9 * smoothstep(-0.1, 0.5, mirror.y);

@@ -12,12 +12,14 @@ out vec4 colour;
 uniform float mouth_front;  // z of the lips at rest
 uniform float mouth_light;  // how much light the lips let in
 
+const vec3 BOUNCED = vec3(0.20, 0.12, 0.10);  // light that the inside of the mouth sends back
+
 vec3 enamel() {
     float up = within.y, aside = within.x * within.x;
     vec3 c = mix(vec3(0.87, 0.79, 0.68), vec3(0.80, 0.67, 0.46), smoothstep(0.35, 1.0, up));
     c = mix(c, vec3(0.66, 0.65, 0.60), 0.5 * smoothstep(0.18, 0.02, up));   // the edge lets light through
     c *= mix(1.0, 0.93, smoothstep(0.008, 0.013, abs(rest_position.x)) * smoothstep(0.020, 0.014, abs(rest_position.x)));
-    c *= mix(vec3(1.0), vec3(0.42, 0.32, 0.26), smoothstep(0.55, 1.02, aside));   // between the teeth
+    c *= mix(vec3(1.0), vec3(0.60, 0.50, 0.42), smoothstep(0.75, 1.05, aside));   // between the teeth
     return c * mix(vec3(1.0), vec3(0.72, 0.50, 0.42), smoothstep(0.72, 1.0, up));  // under the gum
 }
 
@@ -31,8 +33,8 @@ void main() {
     albedo *= mix(0.88 + 0.24 * grain.r, 0.97 + 0.06 * grain.r, matter.x);
     float rough = mix(0.34, 0.20, matter.x);
     float depth = smoothstep(-0.046, 0.002, rest_position.z - mouth_front);
-    float reach = mix(0.08, 1.25, depth * depth) * mouth_light;
-    vec3 light = hemisphere(n), gloss = vec3(0.0);
+    float reach = mix(0.16, 1.0, depth * mix(depth, 1.0, matter.x)) * mouth_light;
+    vec3 light = hemisphere(n) + BOUNCED, gloss = vec3(0.0);
     float n_v = max(dot(n, view), 0.02);
     for (int i = 0; i < 2; i++) {
         vec3 l = light_direction[i].xyz, h = normalize(l + view);

@@ -8,7 +8,7 @@ float key_light(vec3 at, vec3 n) {
     vec2 base = floor(q.xy * texels + 0.5), part = q.xy * texels + 0.5 - base;
     vec2 low = 3.0 - 2.0 * part, high = 1.0 + 2.0 * part;
     vec2 below = (base + (2.0 - part) / low - 1.5) * texel, above = (base + part / high + 0.5) * texel;
-    float z = q.z - 0.0018;
+    float z = q.z - 0.0050;
     float lit = low.x * low.y * texture(key_depth, vec3(below, z)) + high.x * low.y * texture(key_depth, vec3(above.x, below.y, z))
         + low.x * high.y * texture(key_depth, vec3(below.x, above.y, z)) + high.x * high.y * texture(key_depth, vec3(above, z));
     return lit / 16.0;

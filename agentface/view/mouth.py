@@ -32,7 +32,7 @@ class Mouth:
         """The part of the light that reaches the teeth: all through a mouth open by a finger, little through a slit."""
         wider = self._lip_gap(geometry.vertices) - self._lip_gap(self._model.vertices)
         opened = wider / (0.12 * self._model.landmarks.eye_separation)
-        return min(1.0, 0.12 + 0.88 * max(0.0, opened))
+        return min(1.0, 0.03 + 0.97 * max(0.0, opened))
 
     def _lip_gap(self, vertices: Floats) -> float:
         upper, lower = (vertices[ring, 1] for ring in self._lips)

@@ -13,7 +13,7 @@ from agentface.view.refine import unrefined
 _SIDE = 112
 _CLEARANCE = 0.0035
 _SOFTNESS = 0.0045
-_SLACK = 0.0018
+_SLACK = 0.0050
 
 
 class KeyShadow:
