@@ -16,15 +16,17 @@ from agentface import EMOTIONS, AgentFaceError, Face
 HERE = Path(__file__).resolve().parent
 TILE = 480
 LABEL = 56
+MIXTURE = {"happiness": 0.8, "surprise": 0.3}
 
 
 def draw_expressions(path: Path) -> None:
-    """The neutral face and the six emotions at full strength, each with its name."""
+    """The neutral face, the six emotions at full strength and a mixture, each with its name."""
     face = Face()
     sheet = Image.new("RGB", (4 * TILE, 2 * (TILE + LABEL)), "#14181c")
     pen = ImageDraw.Draw(sheet)
-    for place, name in enumerate(("neutral", *EMOTIONS)):
-        face.set_emotion({} if name == "neutral" else {name: 1.0}, fade=0.0)
+    shown = {"neutral": {}} | {name: {name: 1.0} for name in EMOTIONS} | {"happiness 0.8, surprise 0.3": MIXTURE}
+    for place, (name, emotions) in enumerate(shown.items()):
+        face.set_emotion(emotions, fade=0.0)
         left, top = TILE * (place % 4), (TILE + LABEL) * (place // 4)
         sheet.paste(Image.fromarray(face.render((TILE, TILE), quality="portrait")), (left, top))
         middle = (left + TILE / 2, top + TILE + LABEL / 2)
