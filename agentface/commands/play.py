@@ -117,9 +117,8 @@ def _follower(face: Face, score: Score) -> Callable[[float], None]:
 def _show(face: Face, score: Score, look: str | None, camera: str, quality: str, *, loop: bool) -> None:
     from agentface.commands.show import make_window
 
-    window = make_window(face, look=look)
+    window = make_window(face, look=look, quality=quality)
     window.controls.look(camera)
-    window.controls.quality = quality
     follow = _follower(face, score)
     start: float | None = None
 

@@ -15,21 +15,25 @@ if TYPE_CHECKING:
 
 
 @click.command()
+@click.option("--quality", type=click.Choice(["fast", "portrait"]), help="Portrait on a GPU, else fast, if not given.")
 @look_option
 @face_options
-def show(*, look: str | None, face: str, deformer: str) -> None:
+def show(*, quality: str | None, look: str | None, face: str, deformer: str) -> None:
     """Open the live window: a panel with sliders, keys 1 to 6 for the emotions, the mouse for the view."""
     shown = make_face(face, deformer, look=look)
     shown.warm_up()
-    make_window(shown, look=look).run()
+    make_window(shown, look=look, quality=quality).run()
 
 
-def make_window(face: Face, say: Callable[[str], object] = click.echo, look: str | None = None) -> Window:
-    """A window that writes its pictures and films into the current folder."""
+def make_window(
+    face: Face, say: Callable[[str], object] = click.echo, look: str | None = None, quality: str | None = None
+) -> Window:
+    """A window that writes pictures and films into the current folder; ``quality``: what suits the driver if None."""
     from agentface.io.picture import write_picture
     from agentface.io.video import VideoWriter
     from agentface.view.capture import Capture
     from agentface.view.look import load_look
     from agentface.view.window import Window
 
-    return Window(face, capture=Capture(write_picture, VideoWriter, say), look=load_look(face.model, look), say=say)
+    capture, worn = Capture(write_picture, VideoWriter, say), load_look(face.model, look)
+    return Window(face, capture=capture, look=worn, say=say, quality=quality)

@@ -32,3 +32,11 @@ def tier_named(quality: str) -> Tier:
     if quality not in TIERS:
         raise UnknownNameError("quality", quality, tuple(TIERS))
     return TIERS[quality]
+
+
+_WITHOUT_GPU = ("llvmpipe", "softpipe", "software", "swiftshader", "swrast", "gdi generic", "basic render")
+
+
+def suited_quality(driver: str) -> str:
+    """The quality for a live picture on the ``driver`` that OpenGL names: ``portrait`` where there is a GPU."""
+    return "fast" if any(name in driver.lower() for name in _WITHOUT_GPU) else "portrait"

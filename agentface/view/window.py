@@ -18,7 +18,7 @@ from agentface.view.look import Look
 from agentface.view.menu import help_text
 from agentface.view.renderer import Renderer
 from agentface.view.targets import Targets
-from agentface.view.tiers import QUALITIES
+from agentface.view.tiers import QUALITIES, suited_quality
 from agentface.view.times import Times
 
 if TYPE_CHECKING:
@@ -53,6 +53,7 @@ class Window:
         look: colours and lights; the face's own when None.
         clock: seconds, for the steps between frames.
         say: prints the help, and what is amiss.
+        quality: ``portrait`` where the driver has a GPU and else ``fast`` when None.
 
     Raises GraphicsError when glfw is not installed or there is no display.
     """
@@ -65,7 +66,9 @@ class Window:
         look: Look | None = None,
         clock: Callable[[], float] = time.perf_counter,
         say: Callable[[str], object] = print,
+        quality: str | None = None,
     ) -> None:
+        self._quality = quality
         self.controls, self.clock, self.say = Controls(face, capture), clock, say
         self.look, self.times = look, Times()
         self._no_panel = _missing_panel()
@@ -89,6 +92,7 @@ class Window:
             glfw.swap_interval(1)
             context = moderngl.create_context(require=330)
             screen = context.detect_framebuffer()  # before the renderer binds framebuffers of its own
+            self.controls.quality = self._quality or suited_quality(context.info["GL_RENDERER"])
             self._open_panel()
             renderer = Renderer(self.controls.face.model, self.look, context)
             before = self.clock()
