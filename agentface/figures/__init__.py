@@ -12,6 +12,7 @@ FIGURES: dict[str, str] = {
     "eyes": "Figures 7 and 8: closing one eye, closing both; and the squeeze that closes",
     "jaw": "the jaw's opening, from closed to wide",
     "wrinkles": "Figures 11 and 12: shading normals at the wrinkles' feet, and wrinkles on mesh and forehead",
+    "texture": "a picture worn as skin",
     "expressions": "Figures 13 to 16: neutral, surprise, happiness, sadness",
 }
 """The figures and what they show; each is a module of this package with ``figures(face) -> {file name: PNG}``."""

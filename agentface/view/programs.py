@@ -36,7 +36,9 @@ class Programs:
         for tier in TIERS.values():
             worn = ("TEXTURED",) if textured else ()
             self._programs[tier.skin] = self._compile(tier.skin, tier.skin, worn)
-            self._programs[f"{tier.skin}-wrinkled"] = self._compile(tier.skin, tier.skin, (*worn, "WRINKLED"))
+            self._programs[f"{tier.skin}-wrinkled"] = (
+                self._compile(tier.skin, tier.skin, (*worn, "WRINKLED")) if tier.fine else self._programs[tier.skin]
+            )
 
     def __getitem__(self, name: str) -> Any:
         return self._programs[name]

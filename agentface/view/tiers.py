@@ -14,7 +14,7 @@ class Tier:
     Attributes:
         samples: a pixel; 0: one, not resolved.
         skin: its shaders are ``shaders/<skin>.*.glsl``.
-        fine: curved edges, lips on their spline, and the key light's shadow as it falls in the frame.
+        fine: curved edges, lips on their spline, wrinkles that bend normals, the key light's shadow of the frame.
     """
 
     samples: int
