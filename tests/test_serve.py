@@ -106,9 +106,12 @@ def test_it_films_and_shows_a_look(tmp_path, monkeypatch):
 
     shown = []
     window = SimpleNamespace(run=lambda: None)
-    monkeypatch.setattr("agentface.commands.show.make_window", lambda face, look: shown.append(look) or window)
+    monkeypatch.setattr(
+        "agentface.commands.show.make_window", lambda face, look, quality: shown.append((look, quality)) or window
+    )
     assert call(*words, "ginger", "--view", "window").exit_code == 0
-    assert shown == ["ginger"]
+    assert call(*words, "ginger", "--view", "window", "--quality", "portrait").exit_code == 0
+    assert shown == [("ginger", None), ("ginger", "portrait")]
 
 
 @pytest.mark.gl

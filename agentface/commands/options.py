@@ -88,6 +88,11 @@ camera_option = click.option(
     "--camera", type=click.Choice(["front", "three-quarter", "profile"]), default="front", show_default=True
 )
 quality_option = click.option("--quality", type=click.Choice(["fast", "portrait"]), default="fast", show_default=True)
+live_quality_option = click.option(
+    "--quality",
+    type=click.Choice(["fast", "portrait"]),
+    help="If not given: fast, but portrait in a window where there is a GPU.",
+)
 look_option = click.option(
     "--look", metavar="NAME|PATH", help="Another look than the face's own: a file of its folder looks, or a path."
 )

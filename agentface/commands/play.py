@@ -15,9 +15,9 @@ from agentface.commands.film import Film, terminated_as_interrupted
 from agentface.commands.options import (
     camera_option,
     face_options,
+    live_quality_option,
     look_option,
     make_face,
-    quality_option,
     size_option,
 )
 from agentface.errors import DataError, Fault, GraphicsError
@@ -45,7 +45,7 @@ _STOPPED = 130
 )
 @look_option
 @size_option
-@quality_option
+@live_quality_option
 @camera_option
 @face_options
 @click.pass_context
@@ -58,7 +58,7 @@ def play(
     fps: float,
     look: str | None,
     size: tuple[int, int],
-    quality: str,
+    quality: str | None,
     camera: str,
     face: str,
     deformer: str,
@@ -78,7 +78,7 @@ def play(
     shown = make_face(face, deformer, look=look)
     with terminated_as_interrupted():
         if output is not None:
-            _film(shown, score, Film(output, size, camera, quality, fps))
+            _film(shown, score, Film(output, size, camera, quality or "fast", fps))
             return
         shown.warm_up()
         try:
@@ -114,7 +114,7 @@ def _follower(face: Face, score: Score) -> Callable[[float], None]:
     return follow
 
 
-def _show(face: Face, score: Score, look: str | None, camera: str, quality: str, *, loop: bool) -> None:
+def _show(face: Face, score: Score, look: str | None, camera: str, quality: str | None, *, loop: bool) -> None:
     from agentface.commands.show import make_window
 
     window = make_window(face, look=look, quality=quality)

@@ -17,9 +17,9 @@ from agentface.commands.options import (
     address,
     camera_option,
     face_options,
+    live_quality_option,
     look_option,
     make_face,
-    quality_option,
     size_option,
 )
 
@@ -46,7 +46,7 @@ _RECORD = "Film the face; a name like face-%05d.png gives numbered transparent p
 @click.option("--fps", type=click.FloatRange(1, 240), default=None, help="Frames a second: 60, or 30 when recording.")
 @look_option
 @size_option
-@quality_option
+@live_quality_option
 @camera_option
 @face_options
 def serve(
@@ -59,7 +59,7 @@ def serve(
     fps: float | None,
     look: str | None,
     size: tuple[int, int],
-    quality: str,
+    quality: str | None,
     camera: str,
     face: str,
     deformer: str,
@@ -81,10 +81,10 @@ def serve(
     with OscServer(shown, *osc) as server:
         place = f"{server.host}:{server.port}"
         if view == "window":
-            _open_window(shown, place, look)
+            _open_window(shown, place, look, quality)
             return
         rate = fps or (30.0 if record else 60.0)
-        film = Film(record, size, camera, quality, rate) if record else None
+        film = Film(record, size, camera, quality or "fast", rate) if record else None
         # told to stop while it draws what it has noted, it keeps what is drawn
         with (
             terminated_as_interrupted(),
@@ -102,10 +102,10 @@ def _announce(face: Face, place: str) -> None:
     click.echo(f"{face.model.name} listens to OSC on {place}")
 
 
-def _open_window(face: Face, place: str, look: str | None) -> None:
+def _open_window(face: Face, place: str, look: str | None, quality: str | None) -> None:
     from agentface.commands.show import make_window
 
-    window = make_window(face, look=look)
+    window = make_window(face, look=look, quality=quality)
     _announce(face, place)
     with terminated_as_interrupted(), suppress(KeyboardInterrupt):
         window.run()

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from agentface.commands.options import face_options, look_option, make_face
+from agentface.commands.options import face_options, live_quality_option, look_option, make_face
 
 if TYPE_CHECKING:
     from agentface.face import Face
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 @click.command()
-@click.option("--quality", type=click.Choice(["fast", "portrait"]), help="Portrait on a GPU, else fast, if not given.")
+@live_quality_option
 @look_option
 @face_options
 def show(*, quality: str | None, look: str | None, face: str, deformer: str) -> None:
