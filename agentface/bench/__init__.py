@@ -17,6 +17,7 @@ BENCHES: dict[str, str] = {
     "frame": "the whole face, beside a blendshape product with normals, and how it grows with the mesh",
     "crowd": "many faces in one call, on one thread and on two",
     "render": "a picture in both qualities and two sizes, stage by stage, beside clearing and reading one back",
+    "texture": "a picture worn as skin: how finely it lies, how emotions strain it, what drawing it costs",
 }
 """The benchmarks and what they compare; each is a module of this package with ``run() -> dict``."""
 

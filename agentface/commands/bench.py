@@ -15,9 +15,9 @@ from agentface.commands.options import face_options, json_option, write_json
 @json_option
 @face_options
 def bench(*, name: str | None, json_file: str | None, face: str, deformer: str) -> None:
-    """Run one benchmark, or all: deform, fuzzy, papers, frame, crowd, render.
+    """Run one benchmark, or all: deform, fuzzy, papers, frame, crowd, render, texture.
 
-    Of all of them, the one that draws is left out, and said to be, on a machine without OpenGL.
+    Of all of them, those that draw are left out, and said to be, on a machine without OpenGL.
     """
     from agentface.bench import BENCHES
     from agentface.errors import UnknownNameError
