@@ -92,12 +92,12 @@ def _drawn(model: HeadModel, rounds: int, size: tuple[int, int]) -> dict[str, An
 
 
 def _wearing_its_template(model: HeadModel) -> Renderer:
-    from PIL import Image
+    from agentface.io.picture import write_picture
 
     look = load_look(model)
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder) / "skin.png"
-        Image.fromarray(skin_template(model, look, SIDE)).save(file)
+        write_picture(file, skin_template(model, look, SIDE))
         skin = look.skin.model_copy(update={"texture": str(file), "texture_strength": 1.0})
         return Renderer(model, look.model_copy(update={"skin": skin}))
 
