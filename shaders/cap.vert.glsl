@@ -18,7 +18,7 @@ uniform vec3 hair_colour;
 void main() {
     vec3 mean = 0.25 * (skin_position(anchors.x) + skin_position(anchors.y) + skin_position(anchors.z) + skin_position(anchors.w));
     vec3 n = mat3(head) * facing, light = hemisphere(n) * material.y;
-    for (int i = 0; i < LIGHTS; i++) light += light_colour[i].rgb * clamp(0.6 * dot(n, light_direction[i].xyz) + 0.4, 0.0, 1.0) * 0.5;
+    for (int i = 0; i < LIGHTS; i++) light += light_colour[i].rgb * clamp(0.6 * dot(n, light_direction[i].xyz) + 0.4, 0.0, 1.0) * 0.8;
     lit = finish(hair_colour * light);
     rest_position = rest;
     edge = material.x;

@@ -4,7 +4,6 @@ uniform vec3 lip_tint;
 uniform vec3 hair_colour;
 uniform float shine;
 uniform float mouth_front;  // z of the lips at rest
-uniform float mouth_light;  // how much light the lips let in
 
 const float HIDDEN = 0.875;   // of the skin, under dense hair
 const vec3 WRAP = vec3(0.27, 0.20, 0.16);  // how far light goes round the terminator, by channel
@@ -15,10 +14,10 @@ const vec2 F0 = vec2(0.026, 0.036);  // of skin that is dry and moist
 // The skin's colour: tint is redness, eye socket, gloss, under the hair; blotches 0..1 is even at 0.5.
 vec3 complexion_colour(vec4 tint, float mouth, float wet, float blotches) {
     vec3 c = skin_tone * mix(vec3(1.0), vec3(1.04, 0.94, 0.92), clamp(2.0 * blotches - 0.5, 0.0, 1.0));
-    c *= mix(vec3(1.0), vec3(1.03, 0.76, 0.74), tint.x * (0.8 * blotches + 0.6));
-    c *= mix(vec3(1.0), vec3(0.90, 0.80, 0.80), tint.y);
-    c = mix(c, vec3(0.34, 0.09, 0.08), mouth);
-    c = mix(c, mix(skin_tone, vec3(0.45, 0.15, 0.13), 0.5) * vec3(0.95, 0.72, 0.70), 0.75 * wet);
+    c *= mix(vec3(1.0), tint.x < 0.0 ? vec3(0.72, 0.74, 0.80) : vec3(1.03, 0.76, 0.74), abs(tint.x) * (0.8 * blotches + 0.6));
+    c *= mix(vec3(1.0), vec3(0.94, 0.89, 0.90), tint.y);
+    c = mix(c, vec3(0.27, 0.085, 0.08), mouth);
+    c = mix(c, mix(skin_tone, vec3(0.60, 0.30, 0.26), 0.45) * vec3(0.98, 0.86, 0.84), 0.8 * wet);
     return mix(c, hair_colour, HIDDEN * tint.w);
 }
 
@@ -26,15 +25,9 @@ vec3 lip_colour() {
     return mix(skin_tone * vec3(0.82, 0.50, 0.54), lip_tint, 0.35);
 }
 
-// How much of the surroundings' light arrives; inside the mouth by how far back it is.
-float sky_light(float ambient, float lip, float mouth, float z) {
-    float light = max(ambient, max(mix(0.40, 0.80, mouth_light) * lip, 0.32 * mouth));
-    return light * mix(1.0, 0.25 + 0.55 * smoothstep(-0.05, -0.005, z - mouth_front), mouth);
-}
-
 // Light that misses the surface bleeds through it, red the most: powers of about 0.7, 0.95 and 1.05.
 vec3 bled(float light) {
-    return vec3(mix(light, sqrt(light), 0.57), light, light);
+    return vec3(mix(light, sqrt(light), 0.36), mix(light, sqrt(light), 0.05), light);
 }
 
 // Cosines of a light for the channels: red follows the blurred normal, blue the sharp one.
@@ -43,7 +36,7 @@ vec3 scattered(vec3 sharp, vec3 soft, vec3 l) {
 }
 
 float roughness(float gloss, float lip, float moist) {
-    return mix(mix(mix(0.56, 0.44, gloss), 0.43, lip), 0.27, moist);
+    return mix(mix(mix(0.58, 0.47, gloss), 0.46, lip), 0.27, moist);
 }
 
 // How much of the shine is seen.

@@ -26,18 +26,21 @@ void main() {
     float edge = length(local.xy), ri = length(at.xy) / iris_radius;
     float on_iris = smoothstep(iris_radius + 0.02, iris_radius - 0.03, edge) * step(0.0, local.z);
     vec2 spoke = at.xy / max(length(at.xy), 1e-4);
-    float fibres = 0.5 * noise(vec3(spoke * 1.1, 0.12 * ri)).r + 0.5 * noise(vec3(spoke * 3.1, 0.2 * ri)).g;
-    vec3 iris = mix(iris_outer, iris_inner, smoothstep(0.35, 0.62, fibres)) * mix(1.2, 0.75, smoothstep(0.38, 0.9, ri));
-    iris *= 1.0 - 0.8 * smoothstep(0.80, 1.02, ri);
+    float fibres = 0.45 * noise(vec3(spoke * 2.3, 0.25 * ri)).r + 0.55 * noise(vec3(spoke * 5.3, 0.5 * ri)).g;
+    float collar = exp(-pow((ri - pupil_radius - 0.16) / 0.13, 2.0));   // the collarette, lighter
+    vec3 iris = mix(iris_outer, iris_inner, smoothstep(0.28, 0.70, fibres + 0.10 * collar)) * mix(1.15, 0.70, smoothstep(0.42, 0.95, ri));
+    iris *= (0.85 + 0.30 * collar) * (1.0 - 0.88 * smoothstep(0.72, 1.02, ri));
     iris *= smoothstep(pupil_radius, pupil_radius + 0.06, ri);
     float side = length(local.xy);
-    vec3 white = mix(sclera, sclera * vec3(0.92, 0.62, 0.56), 0.5 * smoothstep(0.5, 0.95, side));
+    float veins = smoothstep(0.60, 0.72, noise(vec3(local.xy * vec2(0.35, 1.4), 0.3)).g) * smoothstep(0.50, 0.85, side);
+    vec3 white = mix(sclera, sclera * vec3(0.90, 0.60, 0.54), 0.5 * smoothstep(0.45, 0.95, side) + 0.18 * veins);
     white *= 1.0 - 0.35 * smoothstep(iris_radius + 0.10, iris_radius, edge);
 
     vec3 q = transpose(mat3(head)) * (position - centre) / radius;
     float over = dot(upper_lid, vec3(1.0, q.x, q.x * q.x)) - q.y, under = q.y - dot(lower_lid, vec3(1.0, q.x, q.x * q.x));
-    float shade = smoothstep(-0.02, 0.42, over) * smoothstep(-0.06, 0.20, under);
-    shade = mix(0.16, 1.0, shade) * mix(0.45, 1.0, smoothstep(0.0, 0.30, min(q.x - corners.x, corners.y - q.x)));
+    // the lids keep light off, most the upper one with its lashes; the globe turns away to the corners
+    float shade = mix(0.10, 1.0, smoothstep(-0.04, 0.50, over)) * mix(0.45, 1.0, smoothstep(-0.05, 0.26, under));
+    shade *= mix(0.30, 1.0, smoothstep(-0.05, 0.42, min(q.x - corners.x, corners.y - q.x)));
     vec3 ns = normalize(mix(n, mat3(head)[2], 0.25));
     vec3 light = hemisphere(ns), behind = 0.8 * hemisphere(n), shine = vec3(0.0);
     vec3 mirror = reflect(-view, n);
@@ -55,6 +58,8 @@ void main() {
     }
     shine += hemisphere(mirror) * 0.9 * smoothstep(-0.1, 0.5, mirror.y);
     vec3 c = mix(white * light, iris * behind, on_iris) * shade;
+    // the tears' edge along the lower lid
+    c += 0.16 * (light_colour[0].rgb + light_colour[1].rgb) * exp(-pow((under - 0.035) / 0.020, 2.0)) * smoothstep(0.05, 0.25, min(q.x - corners.x, corners.y - q.x)) * smoothstep(0.05, 0.2, over);
     c += shine * bright * smoothstep(0.0, 0.10, over) * mix(0.6, 1.0, on_iris) * smoothstep(-0.02, 0.06, under);
     colour = vec4(finish(c), 1.0);
 }

@@ -7,42 +7,46 @@
 centroid in vec3 position, normal, rest_position;
 centroid in vec4 matter;   // tooth, gum, tongue
 centroid in vec2 within;   // on a tooth: across -1..1, up 0 (edge)..1 (gum)
+centroid in vec3 reach;    // of the surroundings' light and the key light what arrives; how far behind the lips
 out vec4 colour;
 
-uniform float mouth_front;  // z of the lips at rest
-uniform float mouth_light;  // how much light the lips let in
+uniform vec3 teeth;
 
-const vec3 BOUNCED = vec3(0.20, 0.12, 0.10);  // light that the inside of the mouth sends back
+const vec3 GUM = vec3(0.46, 0.20, 0.185), TONGUE = vec3(0.40, 0.15, 0.145);
 
-vec3 enamel() {
+// The colour of a tooth; the gum lies on it in a bow.
+vec3 enamel(out float gum) {
     float up = within.y, aside = within.x * within.x;
-    vec3 c = mix(vec3(0.87, 0.79, 0.68), vec3(0.80, 0.67, 0.46), smoothstep(0.35, 1.0, up));
-    c = mix(c, vec3(0.66, 0.65, 0.60), 0.5 * smoothstep(0.18, 0.02, up));   // the edge lets light through
-    c *= mix(1.0, 0.93, smoothstep(0.008, 0.013, abs(rest_position.x)) * smoothstep(0.020, 0.014, abs(rest_position.x)));
-    c *= mix(vec3(1.0), vec3(0.60, 0.50, 0.42), smoothstep(0.75, 1.05, aside));   // between the teeth
-    return c * mix(vec3(1.0), vec3(0.72, 0.50, 0.42), smoothstep(0.72, 1.0, up));  // under the gum
+    vec3 c = mix(teeth, teeth * vec3(0.96, 0.90, 0.83), smoothstep(0.30, 0.95, up));
+    c = mix(c, 0.75 * teeth.ggg, 0.45 * smoothstep(0.14, 0.0, up));   // the edge lets light through
+    c *= mix(vec3(1.0), vec3(0.74, 0.64, 0.56), smoothstep(0.70, 1.0, aside));   // between the teeth
+    float line = 0.80 - 0.13 * aside;
+    gum = smoothstep(line - 0.03, line + 0.03, up);
+    return mix(c * mix(1.0, 0.80, smoothstep(line - 0.16, line, up)), GUM, gum);
 }
 
 void main() {
     vec3 view = normalize(eye_point.xyz - position), n = normalize(normal);
     n = dot(n, view) < 0.0 ? -n : n;
     vec4 grain = noise(rest_position * 150.0);
-    float tongue = matter.z, groove = exp(-pow(rest_position.x / 0.0016, 2.0));
-    n = normalize(n + (0.05 * matter.x + 0.12 * matter.y + 0.30 * tongue) * (grain.bag - 0.5));
-    vec3 albedo = matter.x * enamel() + matter.y * vec3(0.52, 0.20, 0.19) + tongue * vec3(0.54, 0.20, 0.19) * (1.0 - 0.25 * groove);
-    albedo *= mix(0.88 + 0.24 * grain.r, 0.97 + 0.06 * grain.r, matter.x);
-    float rough = mix(0.34, 0.20, matter.x);
-    float depth = smoothstep(-0.046, 0.002, rest_position.z - mouth_front);
-    float reach = mix(0.16, 1.0, depth * mix(depth, 1.0, matter.x)) * mouth_light;
-    vec3 light = hemisphere(n) + BOUNCED, gloss = vec3(0.0);
+    float tongue = matter.z, groove = exp(-pow(rest_position.x / 0.0030, 2.0)), gummed;
+    vec3 tooth = enamel(gummed);
+    float enamelled = matter.x * (1.0 - gummed);
+    n = normalize(n + (0.03 * enamelled + 0.14 * (1.0 - enamelled) * (1.0 - tongue) + 0.34 * tongue) * (grain.bag - 0.5));
+    vec3 albedo = matter.x * tooth + matter.y * GUM + tongue * TONGUE * (1.0 - 0.12 * groove);
+    albedo *= mix(0.88 + 0.24 * grain.r, 0.98 + 0.04 * grain.r, enamelled);
+    float rough = mix(0.32, 0.24, enamelled), sky_part = min(reach.x * mix(2.0 - 0.7 * tongue, 1.55, enamelled), 1.0), key_part = reach.y;   // teeth light each other
+    // what the walls send back is red and dies away behind
+    vec3 walls = vec3(0.60, 0.27, 0.20) * sky_part * exp(-reach.z / 0.016);
+    vec3 light = hemisphere(n) * sky_part + walls, gloss = vec3(0.0);
     float n_v = max(dot(n, view), 0.02);
     for (int i = 0; i < 2; i++) {
         vec3 l = light_direction[i].xyz, h = normalize(l + view);
-        float n_l = max(dot(n, l), 0.0);
-        light += light_colour[i].rgb * wrapped(vec3(dot(n, l)), mix(vec3(0.40, 0.28, 0.22), vec3(0.42), matter.x));
-        gloss += light_colour[i].rgb * ggx(max(dot(n, h), 0.0), rough) * visibility(n_l, n_v, rough) * fresnel(0.042, max(dot(view, h), 0.0)) * n_l * PI;
+        float n_l = max(dot(n, l), 0.0), part = i == 0 ? key_part * mix(sky_part, 1.0, 0.45) : sky_part;
+        light += part * light_colour[i].rgb * wrapped(vec3(dot(n, l)), mix(vec3(0.40, 0.26, 0.22), vec3(0.42, 0.38, 0.34), enamelled));
+        gloss += part * mix(sky_part, 1.0, 0.4) * light_colour[i].rgb * ggx(max(dot(n, h), 0.0), rough) * visibility(n_l, n_v, rough) * fresnel(0.045, max(dot(view, h), 0.0)) * n_l * PI;
     }
-    gloss += hemisphere(reflect(-view, n)) * fresnel(0.042, n_v) * 0.6;
-    vec3 warm = mix(vec3(1.45, 0.76, 0.62), vec3(1.04, 0.96, 0.88), depth);  // light that lips and cheeks let through
-    colour = vec4(finish((albedo * light * warm + gloss * depth) * reach), 1.0);
+    gloss += sky_part * hemisphere(reflect(-view, n)) * fresnel(0.045, n_v) * 0.8;
+    float back = 0.05 + exp(-max(reach.z - 0.012, 0.0) / 0.013);   // it is dark in the throat
+    colour = vec4(finish(albedo * light * mix(back, 1.0, 0.25 * enamelled) + gloss * back), 1.0);
 }

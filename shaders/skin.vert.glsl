@@ -5,6 +5,7 @@
 #include "shading.glsl"
 #include "noise.glsl"
 #include "shadow.glsl"
+#include "mouth.glsl"
 #include "complexion.glsl"
 #include "atlas.glsl"
 #include "skin_place.glsl"
@@ -22,7 +23,8 @@ centroid out vec2 atlas;
 #endif
 
 void main() {
-    vec4 placed = head * vec4(edge_position(ends), 1.0);
+    vec3 own_place = edge_position(ends);
+    vec4 placed = head * vec4(own_place, 1.0);
     vec3 n = edge_normal(ends), position = placed.xyz, soft = normalize(mat3(head) * (soft_normal + 0.6 * (n - rest_normal)));
     n = mat3(head) * n;
     normal = n;
@@ -33,9 +35,9 @@ void main() {
     atlas = atlas_place(rest);
 #endif
     float lip = smoothstep(0.30, 0.75, material.x), mouth = smoothstep(0.35, 0.9, material.y), wet = smoothstep(0.2, 0.95, material.z);
-    float moist = max(mouth, wet), sky = sky_light(ambient, lip, mouth, rest.z), shown = sheen(ambient, mouth, complexion.w, max(lip, wet));
+    float moist = max(mouth, wet), sky = sky_light(ambient, lip, mouth, wet, own_place), shown = sheen(ambient, mouth, complexion.w, max(0.5 * lip, wet));
     float mottle = textureLod(noise_volume, rest * 9.0, 0.0).r - 0.5;
-    vec3 albedo = mix(complexion_colour(complexion, mouth, wet, 0.5) * (1.0 + 0.16 * mottle), lip_colour(), 0.86 * lip * (1.0 - mouth));
+    vec3 albedo = mix(complexion_colour(complexion, mouth, wet, 0.5) * (1.0 + 0.19 * mottle), lip_colour(), 0.86 * lip * (1.0 - mouth));
 
     vec3 view = normalize(towards), wrap = WRAP * (1.0 - 0.6 * mouth), light = hemisphere(soft), occlusion = bled(sky), key = light_direction[0].xyz;
     float n_v = max(dot(n, view), 0.02), rough = roughness(complexion.z, lip, moist), f0 = mix(F0.x, F0.y, max(lip, wet));
@@ -52,7 +54,8 @@ void main() {
 #endif
     around = albedo * light * occlusion + gloss;
     soft_key = dot(soft, key);
-    float lit = mix(1.0, key_light(position, n), smoothstep(-0.05, 0.30, soft_key) * (1.0 - mouth));
+    float lit = mix(1.0, key_light(position, n), smoothstep(-0.05, 0.30, soft_key));
+    lit = mix(lit, 0.5 * sky, mouth);   // inside, no more than of the sky
     key_body = albedo * light_colour[0].rgb * bled(lit) * mix(vec3(1.0), occlusion, 0.75);
     matter = vec4(lip, moist, rough, lit * shown);
 }

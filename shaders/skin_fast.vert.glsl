@@ -4,6 +4,7 @@
 #include "surface.glsl"
 #include "shading.glsl"
 #include "noise.glsl"
+#include "mouth.glsl"
 #include "complexion.glsl"
 #include "atlas.glsl"
 #include "develop.glsl"
@@ -17,20 +18,22 @@ out vec2 atlas;
 #endif
 
 void main() {
-    vec4 placed = head * vec4(edge_position(ends), 1.0);
+    vec3 own_place = edge_position(ends);
+    vec4 placed = head * vec4(own_place, 1.0);
     vec3 at_normal = edge_normal(ends), n = mat3(head) * at_normal;
     vec3 soft = normalize(mat3(head) * (soft_normal + 0.6 * (at_normal - rest_normal)));
     vec3 position = placed.xyz;
     gl_Position = skin_clip(position);
     atlas = atlas_place(rest);
     float lip = smoothstep(0.30, 0.75, material.x), mouth = smoothstep(0.35, 0.9, material.y), wet = smoothstep(0.2, 0.95, material.z);
-    float moist = max(mouth, wet), sky = sky_light(ambient, lip, mouth, rest.z);
+    float moist = max(mouth, wet), sky = sky_light(ambient, lip, mouth, wet, own_place);
     vec4 coarse = textureLod(noise_volume, rest * 9.0, 0.0);
-    vec3 albedo = complexion_colour(complexion, mouth, wet, coarse.g) * (0.92 + 0.16 * coarse.r);
+    vec3 albedo = complexion_colour(complexion, mouth, wet, coarse.g) * (0.905 + 0.19 * coarse.r);
     albedo = mix(albedo, lip_colour(), 0.86 * lip * (1.0 - mouth));
 
     vec3 occlusion = bled(sky), wrap = WRAP * (1.0 - 0.6 * mouth), view = normalize(eye_point.xyz - position);
-    float lit = mix(1.0, lit_at_rest, smoothstep(-0.05, 0.30, dot(soft, light_direction[0].xyz)) * (1.0 - mouth));
+    float lit = mix(1.0, lit_at_rest, smoothstep(-0.05, 0.30, dot(soft, light_direction[0].xyz)));
+    lit = mix(lit, 0.5 * sky, mouth);   // inside, no more than of the sky
     vec3 diffuse = hemisphere(soft) * occlusion, gloss = vec3(0.0);
     float n_v = max(dot(n, view), 0.02), rough = roughness(complexion.z, lip, moist), f0 = mix(F0.x, F0.y, max(lip, wet));
     for (int i = 0; i < LIGHTS; i++) {
@@ -39,7 +42,7 @@ void main() {
         gloss += light_colour[i].rgb * ((i == 0 ? lit : unhidden(soft, l)) * glint(n, l, view, n_v, 0.9 * rough, f0));
     }
     gloss += hemisphere(reflect(-view, n)) * fresnel(f0, n_v) * 0.5;
-    float shown = sheen(ambient, mouth, complexion.w, max(lip, wet));
+    float shown = sheen(ambient, mouth, complexion.w, max(0.5 * lip, wet));
     gloss *= 0.8 * shown;
 #ifdef TEXTURED
     body = wear(albedo, gloss, moist) * diffuse;

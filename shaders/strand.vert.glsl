@@ -32,7 +32,7 @@ void main() {
     float own = fract(paint.r * 3571.0 + float(anchor) * 0.618);
 
     float t = stroke.x, pixels = stroke.y * eye_point.w / length(towards);
-    float taper = mix(1.0 - smoothstep(0.62, 1.02, t), 1.0 - 0.92 * smoothstep(0.78, 1.0, t), solid) * mix(0.4, 1.0, smoothstep(0.0, 0.15, t));
+    float taper = mix(1.0 - smoothstep(0.62, 1.02, t), 1.0 - 0.96 * smoothstep(0.62, 1.0, t), solid) * mix(0.08, 1.0, smoothstep(0.0, 0.12, t));
     float widened = max(1.0, narrowest / max(pixels * taper, 1e-4));
     // the head hides its far side, though not what hangs below it
     float seen = dot(n, view) < -0.3 && rest.y > hair_centre.y - 0.03 ? 0.0 : 1.0;

@@ -51,6 +51,40 @@ class LidSphincter(Table):
     up: Annotated[float, Field(ge=0, le=0.3)]
 
 
+class LidTightening(Table):
+    """The preseptal part of pars palpebralis: the lower lid rises and straightens (AU 7).
+
+    Attributes:
+        turn_deg: about the eye's centre, in the middle of the lid.
+        corners: the part of it at the corners of the eye.
+        whole, ends: distances from the edge of the lid in eye separations: skin turns along whole up to the first, and
+            not at all beyond the second; from there on it is lifted instead.
+        half_axes: of the ellipse of skin that is lifted, to the temple, to the nose and down, in eye separations.
+        lift, inward: how far at most, in eye separations; inward only on the temple's side.
+    """
+
+    turn_deg: Annotated[float, Field(ge=0, le=30)]
+    corners: _Part
+    whole: _Length
+    ends: _Length
+    half_axes: Annotated[list[Annotated[float, Field(gt=0, le=2)]], Field(min_length=3, max_length=3)]
+    lift: Annotated[float, Field(ge=0, le=0.2)]
+    inward: Annotated[float, Field(ge=0, le=0.2)]
+
+    @model_validator(mode="after")
+    def _ordered(self) -> Self:
+        if self.whole >= self.ends:
+            raise ValueError("whole must be below ends")
+        return self
+
+
+class LidSlant(Table):
+    """The upper lid follows an inner brow that rises alone: up in its inner part, down in its outer part."""
+
+    inner_deg: Annotated[float, Field(ge=0, le=20)]
+    outer_deg: Annotated[float, Field(ge=0, le=20)]
+
+
 class LidMotion(Table):
     """How the lids move.
 
@@ -64,6 +98,8 @@ class LidMotion(Table):
         sphere: the least distance of the lids' skin from the eye's centre, in radii of the eye.
         upper, lower: how each lid takes its surroundings along.
         sphincter: pars orbitalis.
+        tightening: the lower lid's own muscle.
+        slant: what the inner brow does to the upper lid.
     """
 
     edge_ring: Annotated[int, Field(ge=0)]
@@ -75,3 +111,5 @@ class LidMotion(Table):
     upper: LidFade
     lower: LidFade
     sphincter: LidSphincter
+    tightening: LidTightening
+    slant: LidSlant

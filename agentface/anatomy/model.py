@@ -14,9 +14,11 @@ from agentface.anatomy.glb import MeshArrays, Shape, read_glb, texture_coordinat
 from agentface.anatomy.landmarks import Landmarks, load_landmarks
 from agentface.anatomy.muscle_set import MuscleSet
 from agentface.anatomy.muscles import MusclesFile, place_muscles, read_muscles
+from agentface.anatomy.normals import vertex_normals
 from agentface.anatomy.regions import Regions, load_regions
 from agentface.anatomy.rings import EyelidsFile, LipsFile, load_rings
 from agentface.anatomy.unwrap import unwrap, unwrap_centre, unwrap_cover
+from agentface.anatomy.volumes import PlacedVolume, VolumesFile, place_volumes, read_volumes
 from agentface.anatomy.wrinkles import PlacedTrain, WrinklesFile, place_trains, read_wrinkles
 from agentface.config import Table, load
 from agentface.conventions import SIDES, Floats, Indices
@@ -80,6 +82,7 @@ class HeadModel:
         eyes, jaw, lips, eyelids: the tables of the same names.
         muscles_file: the table of the vector muscles.
         wrinkles_file: the table of the trains of wrinkles that follow no single vector muscle.
+        volumes_file: the table of the volumes that muscles gather or hollow.
         own_uv: ``(V, 2)`` float32 0..1, the texture coordinates that the file has, or None.
     """
 
@@ -101,12 +104,25 @@ class HeadModel:
     eyelids: EyelidsFile
     muscles_file: MusclesFile
     wrinkles_file: WrinklesFile
+    volumes_file: VolumesFile
     own_uv: Floats | None
 
     @cached_property
     def muscles(self) -> MuscleSet:
         """The vector muscles in metres."""
         return place_muscles(self.muscles_file, self.landmarks, self.regions, self.vertices, self.triangles)
+
+    @cached_property
+    def normals(self) -> Floats:
+        """``(V, 3)`` float32, the skin's unit normals at rest."""
+        return vertex_normals(self.vertices, self.triangles)
+
+    @cached_property
+    def volumes(self) -> tuple[PlacedVolume, ...]:
+        """The volumes; none moves a lid's wet margin or the inside of the mouth."""
+        movable = 1.0 - np.clip(2.0 * self.material[:, 1:3].max(axis=1), 0.0, 1.0)
+        skin = self.vertices, self.normals, self.triangles
+        return place_volumes(self.volumes_file, self.landmarks, self.regions, skin, movable)
 
     @cached_property
     def trains(self) -> tuple[PlacedTrain, ...]:
@@ -167,6 +183,7 @@ def load_model(face: str | Path = DEFAULT_FACE, muscles: MusclesFile | None = No
         eyelids=load_rings(folder / "eyelids.yaml", EyelidsFile, skin),
         muscles_file=muscles or read_muscles(folder / "muscles.yaml"),
         wrinkles_file=read_wrinkles(folder / "wrinkles.yaml"),
+        volumes_file=read_volumes(folder / "volumes.yaml"),
         own_uv=texture_coordinates(skin),
     )
 

@@ -2,10 +2,11 @@
 
 Round an eye's centre, with theta the turn of a point about the lateral axis and rho its distance from that axis:
 
-    theta' = theta + c A + t B + (1 - c) (o W + g G)        rho' = rho (1 + c D + t E)
+    theta' = theta + c A + t B + (1 - c) (o W + g G + n N + i I)        rho' = rho (1 + c D + t E)
 
 ``c`` is the closing, ``t = min(1, 2 s)`` what the squeeze ``s`` raises the line where the lids meet, ``o`` the
-levator, ``g`` the eye's pitch. A, B, W, G, D, E are fields over the skin (:mod:`agentface.deform.lid_fields`): the
+levator, ``g`` the eye's pitch, ``n`` the tightening of the lower lid, ``i`` how far the inner brow rises more than the
+outer one. A, B, W, G, N, I, D, E are fields over the skin (:mod:`agentface.deform.lid_fields`): the
 edges interpolate linearly between open and closed, where both lie on one curve; the skin follows with a fade, down
 onto the sphere that the closed edge lies on. No point goes below a sphere slightly larger than the eye. Before that
 the skin goes the way ``s (2 - s)`` of the sphincter: like a squint, most of it with little force.
@@ -24,7 +25,9 @@ from agentface.deform.eyes import EyesTables
 from agentface.deform.lid_fields import lid_fields
 from agentface.parameters import indices_of
 
-HOLD, CLOSE, HIGHER, WIDEN, FOLLOW, SHRINK, SHRINK_HIGHER, ACROSS, UP, FLOOR = range(10)
+(
+    HOLD, CLOSE, HIGHER, WIDEN, FOLLOW, TIGHTEN, SLANT, SHRINK, SHRINK_HIGHER, ACROSS, UP, TIGHT_ACROSS, TIGHT_UP, FLOOR,
+) = range(14)  # fmt: skip
 """Rows of a block of :attr:`EyelidsTables.fields`."""
 LANES = 16
 """Vertices a block: as many as the compiled loop moves at once."""
@@ -44,13 +47,19 @@ class EyelidsTables(NamedTuple):
     centre: Floats
     """``(2, 3)`` m: the centres of the eyes."""
     fields: Floats
-    """``(B, 10, LANES)``: what :class:`agentface.deform.lid_fields.LidFields` has after ``vertex``, in its order."""
+    """``(B, 14, LANES)``: what :class:`agentface.deform.lid_fields.LidFields` has after ``vertex``, in its order."""
     closing: Indices
     """``(2,)``: where pars palpebralis stands in a pose."""
     squeezing: Indices
     """``(2,)``: pars orbitalis."""
     opening: Indices
     """``(2,)``: levator palpebrae."""
+    tightening: Indices
+    """``(2,)``: the preseptal part of pars palpebralis."""
+    inner_brow: Indices
+    """``(2,)``: the medial fibres of frontalis."""
+    outer_brow: Indices
+    """``(2,)``: its lateral fibres."""
     eyes: EyesTables
     """How far the eyes turn: the lids follow them."""
 
@@ -70,6 +79,9 @@ def prepare(model: HeadModel) -> EyelidsTables:
         closing=np.array(indices_of("orbicularis_oculi_palpebralis"), np.int32),
         squeezing=np.array(indices_of("orbicularis_oculi_orbitalis"), np.int32),
         opening=np.array(indices_of("levator_palpebrae"), np.int32),
+        tightening=np.array(indices_of("orbicularis_oculi_preseptalis"), np.int32),
+        inner_brow=np.array(indices_of("frontalis_medialis"), np.int32),
+        outer_brow=np.array(indices_of("frontalis_lateralis"), np.int32),
         eyes=eyes.prepare(model),
     )
 
@@ -89,8 +101,27 @@ def coupled(closing: float, squeezing: float, other_closing: float, other_squeez
 def apply(tables: EyelidsTables, values: Floats, points: Floats) -> None:
     """Move the lids and what they take along of ``points (V + C, 3)`` m in place, to the parameters ``values``."""
     closing, squeezing, opening = (values[row] for row in (tables.closing, tables.squeezing, tables.opening))
+    tightening, alone = (
+        values[tables.tightening],
+        np.maximum(values[tables.inner_brow] - values[tables.outer_brow], 0.0),
+    )
     columns = np.moveaxis(tables.fields, 1, 0).reshape(FLOOR + 1, -1)
-    hold, close, higher, widen, follow, shrink, shrink_higher, across, up, floor = columns
+    (
+        hold,
+        close,
+        higher,
+        widen,
+        follow,
+        tighten,
+        slant,
+        shrink,
+        shrink_higher,
+        across,
+        up,
+        tight_across,
+        tight_up,
+        floor,
+    ) = columns
     for side in range(len(SIDES)):
         c, s = (
             np.float32(level)
@@ -103,9 +134,11 @@ def apply(tables: EyelidsTables, values: Floats, points: Floats) -> None:
         at, rest = points[where], np.moveaxis(tables.rest[side], 1, 2).reshape(-1, 3)
         at -= hold[:, None] * (at - rest)
         way = s * (_TWO - s)
-        at[:, 0] += way * across * (1 - 2 * side)
-        at[:, 1] += way * up
-        angle = c * close + raised * higher + (_ONE - c) * (o * widen + pitch * follow)
+        tight = (_ONE - c) * tightening[side]
+        at[:, 0] += (way * across + tight * tight_across) * (1 - 2 * side)
+        at[:, 1] += way * up + tight * tight_up
+        turned = o * widen + pitch * follow + alone[side] * slant
+        angle = c * close + raised * higher + (_ONE - c) * turned + tight * tighten
         scale = _ONE + c * shrink + raised * shrink_higher
         cosine, sine = scale * np.cos(angle) - _ONE, scale * np.sin(angle)
         y, z = at[:, 1] - centre[1], at[:, 2] - centre[2]

@@ -10,7 +10,20 @@ import numpy as np
 from agentface.anatomy.model import HeadModel
 from agentface.anatomy.muscle_set import MuscleSet
 from agentface.conventions import Floats, Indices
-from agentface.deform import between, contact, creases, eyelids, eyes, head, jaw, limits, lips, shading, wrinkles
+from agentface.deform import (
+    between,
+    contact,
+    creases,
+    eyelids,
+    eyes,
+    head,
+    jaw,
+    limits,
+    lips,
+    shading,
+    volumes,
+    wrinkles,
+)
 from agentface.deform.between import BetweenTables
 from agentface.deform.contact import ContactTables
 from agentface.deform.eyelids import EyelidsTables
@@ -21,6 +34,7 @@ from agentface.deform.limits import LimitTables
 from agentface.deform.lips import LipTables
 from agentface.deform.shading import ShadingTables
 from agentface.deform.squash import SquashTables
+from agentface.deform.volumes import VolumeTables
 from agentface.deform.wrinkles import WrinkleTables
 
 
@@ -30,8 +44,8 @@ class PartTables(NamedTuple):
     Attributes:
         rest: ``(P, 3)`` float32 m, the skin's vertices, then the control points.
         triangles: ``(T, 3)`` int32, of the skin.
-        limits, lips, eyelids, jaw, contact, creases, between, wrinkles, shading, eyes, head: the parts of
-            the same names.
+        limits, lips, eyelids, volumes, jaw, contact, creases, between, wrinkles, shading, eyes, head: the parts
+            of the same names.
     """
 
     rest: Floats
@@ -39,6 +53,7 @@ class PartTables(NamedTuple):
     limits: LimitTables
     lips: LipTables
     eyelids: EyelidsTables
+    volumes: VolumeTables
     jaw: JawTables
     contact: ContactTables
     creases: SquashTables
@@ -67,6 +82,7 @@ def prepare(model: HeadModel) -> tuple[PartTables, MuscleSet]:
         limits=limits.prepare(model, follow, rest),
         lips=of_lips,
         eyelids=of_eyelids,
+        volumes=volumes.prepare(model),
         jaw=jaw.prepare(model, follow, (of_lips.patch, of_lips.controls, of_lips.weight, of_lips.control_rest)),
         contact=contact.prepare(model),
         creases=creases.prepare(model, of_eyelids, of_lips),

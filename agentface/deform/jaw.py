@@ -7,6 +7,9 @@ A point p that makes the share s(p) of the jaw's turn, 0..1, goes to
 with R the rotation about the axis parallel to X through the hinge c, positive a opening. The shares are the face's
 ``jaw_weights``: 1 for the chin and the middle of the lower lip, less towards the corners of the mouth, one third there,
 and from there to 0 in the middle of the upper lip. Lower teeth and tongue make the whole turn.
+
+A turn alone leaves cheeks and corners of the mouth standing where the skin of a face is drawn taut against the teeth:
+before it, p goes a way d(p) · jaw_open in the horizontal plane, what the artists' jawOpen has beyond the turn.
 """
 
 from __future__ import annotations
@@ -16,6 +19,7 @@ from typing import NamedTuple, TypeAlias
 
 import numpy as np
 
+from agentface.anatomy.evening import evened
 from agentface.anatomy.model import HeadModel
 from agentface.conventions import Doubles, Floats, Indices
 from agentface.deform.lip_surface import mirrored_controls
@@ -29,6 +33,9 @@ and where they rest ``(C, 3)`` m."""
 _CORNER = 1000.0  # vertices that a corner of the lips counts for: there the paper says the share
 _PRIOR = 1e-3
 _STEPS = 1500
+_EVENINGS = 6
+_TAUT = 0.6  # of what the artists' shape draws back: the rest would go through the upper teeth
+JAW_SHAPE = "jawOpen"
 
 
 class JawTables(NamedTuple):
@@ -37,6 +44,7 @@ class JawTables(NamedTuple):
     Attributes:
         where: ``(N,)`` int32, rows of the points that follow the jaw.
         share: ``(N,)`` float32 0..1, the part of the turn that each makes.
+        drawn: ``(N, 2)`` float32 m, how far each goes along x and z at the whole opening.
         hinge: ``(2,)`` float32 m, y and z of the axis.
         widest: rad, the turn of the whole opening.
         parameter: where ``jaw_open`` stands in a pose.
@@ -44,6 +52,7 @@ class JawTables(NamedTuple):
 
     where: Indices
     share: Floats
+    drawn: Floats
     hinge: Floats
     widest: float
     parameter: int
@@ -54,20 +63,35 @@ def prepare(model: HeadModel, follow: Follow | None = None, surface: Surface | N
 
     Where these span a ``surface`` of vertices, their shares are such that the surface's are its vertices'.
     """
-    share = model.jaw_weights
+    share, drawn = model.jaw_weights, _drawn(model)
     if follow is not None:
+        drawn = np.concatenate([drawn, (drawn[follow[0]] * follow[1][..., None]).sum(axis=1)])
         mean = (share[follow[0]] * follow[1]).sum(axis=1)
         if surface is not None:
             mean = _spanned(model, mean.astype(np.float64), surface)
         share = np.concatenate([share, mean]).astype(np.float32)
-    where = np.flatnonzero(share).astype(np.int32)
+    where = np.flatnonzero((share > 0.0) | drawn.any(axis=1)).astype(np.int32)
     return JawTables(
         where=where,
         share=np.ascontiguousarray(share[where]),
+        drawn=np.ascontiguousarray(drawn[where], np.float32),
         hinge=np.array(model.jaw.pivot[1:], np.float32),
         widest=math.radians(model.jaw.widest_deg),
         parameter=indices_of("jaw_open")[0],
     )
+
+
+def _drawn(model: HeadModel) -> Doubles:
+    """``(V, 2)`` m along x and z: what the artists' jawOpen has beyond the turn, evened out; 0 without that shape."""
+    if JAW_SHAPE not in model.shapes:
+        return np.zeros((len(model.vertices), 2))
+    rest = model.vertices.astype(np.float64)
+    angle = math.radians(model.jaw.widest_deg) * model.jaw_weights
+    up, forward = (rest[:, 1:] - model.jaw.pivot[1:]).T
+    turned = np.sin(angle) * up + (np.cos(angle) - 1.0) * forward
+    beyond = model.shapes[JAW_SHAPE].dense(len(rest))[:, ::2] - np.column_stack([0.0 * turned, turned])
+    beyond[:, 1] = np.minimum(beyond[:, 1], 0.0)
+    return _TAUT * evened(beyond, model.triangles, _EVENINGS)
 
 
 def _spanned(model: HeadModel, prior: Doubles, surface: Surface) -> Doubles:
@@ -100,6 +124,7 @@ def apply(tables: JawTables, values: Floats, points: Floats) -> None:
     """Turn ``points (P, 3)`` m in place, to the pose ``values``; a closed jaw leaves them as they are."""
     if values[tables.parameter] == 0.0:
         return
+    points[tables.where, ::2] += values[tables.parameter] * tables.drawn
     turn = tables.share * np.float32(tables.widest * values[tables.parameter])
     cosine, sine = np.cos(turn), np.sin(turn)
     up, forward = (points[tables.where, 1:] - tables.hinge).T

@@ -9,11 +9,13 @@ from typing import TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from agentface.anatomy.lids import LidMotion
+from agentface.anatomy.evening import evened
+from agentface.anatomy.lids import LidMotion, LidSlant
 from agentface.anatomy.model import HeadModel
 from agentface.anatomy.resample import ResampledModel
 from agentface.anatomy.rings import RingHalves
 from agentface.conventions import SIDES, Doubles, Indices
+from agentface.smoothstep import falloff
 
 _Mask: TypeAlias = npt.NDArray[np.bool_]
 _THICKNESS = 0.05  # of the eye's radius, by which a lid bulges over its edge when it is stretched
@@ -34,8 +36,10 @@ class LidFields:
         hold: 0..1, how much of what vector muscles did is taken back.
         close, meet_higher: rad, the turn of a full closing, and what a full squeeze adds to it.
         widen, follow: rad and rad a rad, the turn of the levator and of the gaze's pitch.
+        tighten, slant: rad, the turn of the lower lid's own muscle, and of an inner brow that rises alone.
         shrink, shrink_higher: change of the distance from the eye's axis, as parts, with ``close``, ``meet_higher``.
         across, up: m, the way of a full squeeze.
+        tight_across, tight_up: m, the way that goes with ``tighten``.
         floor: m, the least distance from the eye's centre.
     """
 
@@ -45,10 +49,14 @@ class LidFields:
     meet_higher: Doubles
     widen: Doubles
     follow: Doubles
+    tighten: Doubles
+    slant: Doubles
     shrink: Doubles
     shrink_higher: Doubles
     across: Doubles
     up: Doubles
+    tight_across: Doubles
+    tight_up: Doubles
     floor: Doubles
 
 
@@ -137,7 +145,7 @@ def lid_fields(model: HeadModel) -> LidFields:
         gap[loop], place[loop] = 0.0, arms[loop, 0]
     lids = file.upper, file.lower
     hold, whole, lift = (
-        np.where(is_upper, *(_fade(gap / unit, *ends) for ends in pair))
+        np.where(is_upper, *(falloff(gap / unit, *ends) for ends in pair))
         for pair in (
             [lid.hold for lid in lids],
             [(lid.whole, lid.ends) for lid in lids],
@@ -155,13 +163,32 @@ def lid_fields(model: HeadModel) -> LidFields:
     shrink_higher -= flat * (file.squeezed_meeting - file.meeting) / max(1.0 - file.meeting, 1e-6)
     widen = _rise(edges, file.widest * radius) * np.where(is_upper, lift * profile, 0.0)
     follow = lift * profile * np.where(is_upper, file.upper.pitch, file.lower.pitch)
-    _smooth(model.triangles, gap > 0.0, (close, higher, shrink, shrink_higher, widen, follow, across, up))
+    tighten, tight_across, tight_up = _tightening(model, arms, gap / unit, profile, is_upper)
+    slant = np.where(is_upper, lift * _slant(file.slant, edges[0], place), 0.0)
+    moving = (close, higher, shrink, shrink_higher, widen, follow, tighten, slant, across, up, tight_across, tight_up)
+    for field in moving:  # nearest points of an edge jump where the edge is hollow
+        field[:] = evened(field, model.triangles, _EVENINGS, gap > 0.0)
     for ring in rings[: file.edge_ring]:
         _meet(arms, ring, file, sink, (close, higher, shrink, shrink_higher))
     floor = np.minimum(file.sphere * radius, np.linalg.norm(arms, axis=1) - _SLACK)
-    moved = (hold > 0) | (whole * slit.opening > 1e-9) | (np.hypot(across, up) > 1e-9)
+    moved = (hold > 0) | (whole * slit.opening > 1e-9) | (np.hypot(across, up) > 1e-9) | (tighten + tight_up > 1e-6)
     pick = np.flatnonzero(moved & (model.vertices[:, 0] > 1e-4) & (arms[:, 2] > -radius)).astype(np.int32)
-    fields = (hold, close, higher, widen, follow, shrink, shrink_higher, across, up, floor)
+    fields = (
+        hold,
+        close,
+        higher,
+        widen,
+        follow,
+        tighten,
+        slant,
+        shrink,
+        shrink_higher,
+        across,
+        up,
+        tight_across,
+        tight_up,
+        floor,
+    )
     return LidFields(pick, *(field[pick] for field in fields))
 
 
@@ -183,7 +210,7 @@ def _curves(arms: Doubles, ring: RingHalves) -> tuple[_Curve, _Curve]:
 
 def _flattening(arms: Doubles, slit: _Slit, place: Doubles, gap: Doubles, radius: float) -> Doubles:
     """The part by which the axial distance changes to put stretched skin on the sphere through the closed edge."""
-    sphere = np.hypot(slit.met_reach, place) + _THICKNESS * radius * (1.0 - _fade(gap, 0.0, _ROUNDING))
+    sphere = np.hypot(slit.met_reach, place) + _THICKNESS * radius * (1.0 - falloff(gap, 0.0, _ROUNDING))
     target = np.sqrt(np.maximum(sphere**2 - arms[:, 0] ** 2, (0.5 * radius) ** 2))
     return target / np.maximum(np.hypot(arms[:, 1], arms[:, 2]), 0.2 * radius) - 1.0
 
@@ -195,10 +222,35 @@ def _rise(edges: tuple[_Curve, _Curve], height: float) -> float:
     return max(0.0, math.asin(min(1.0, height / upper.reach[middle])) - upper.turn[middle])
 
 
+def _tightening(
+    model: HeadModel, arms: Doubles, gap: Doubles, profile: Doubles, is_upper: _Mask
+) -> tuple[Doubles, ...]:
+    """The turn of the lower lid at full contraction, and how far the skin below goes across and up.
+
+    ``profile`` is 0 at the corners of the eye and 1 in its middle.
+    """
+    table, unit, lower = model.eyelids.tightening, model.landmarks.eye_separation, ~is_upper
+    near = falloff(gap, table.whole, table.ends)
+    turn = math.radians(table.turn_deg) * (table.corners + (1.0 - table.corners) * np.clip(profile, 0.0, 1.0)) * near
+    x, y = (arms[:, :2] - (model.landmarks[f"lid_lower_{SIDES[0]}"] - model.eye_centre(SIDES[0]))[:2]).T / unit
+    temple, nose, height = table.half_axes
+    lifted = falloff(np.hypot(x / np.where(x > 0, temple, nose), y / height), 0.0, 1.0) * (1.0 - near) * unit
+    across = -table.inward * np.clip(x / temple, 0.0, 1.0) * lifted
+    return tuple(np.where(lower, field, 0.0) for field in (turn, across, table.lift * lifted))
+
+
+def _slant(table: LidSlant, edge: _Curve, place: Doubles) -> Doubles:
+    """The turn of the upper lid: one bow upward over its inner half and one downward over its outer half."""
+    inner, outer = edge.points[[0, -1], 0]
+    part = np.clip((place - inner) / (outer - inner), 0.0, 1.0)
+    turn = np.where(part < 0.5, table.inner_deg, table.outer_deg)
+    return np.radians(turn) * np.sin(2.0 * np.pi * part)
+
+
 def _sinking(edge: _Curve, slit: _Slit, place: Doubles, depth: float) -> Doubles:
     """The turn by which the outer corner of the eye sinks with the closing, fading out along the lids."""
     inner, outer = edge.points[[0, -1], 0]
-    return -depth / slit.met_reach * _fade((outer - place) / (outer - inner), 0.0, _CORNER)
+    return -depth / slit.met_reach * falloff((outer - place) / (outer - inner), 0.0, _CORNER)
 
 
 def _meet(arms: Doubles, ring: RingHalves, motion: LidMotion, sink: Doubles, fields: tuple[Doubles, ...]) -> None:
@@ -210,16 +262,6 @@ def _meet(arms: Doubles, ring: RingHalves, motion: LidMotion, sink: Doubles, fie
             field[half] = move + share * sink[half]
 
 
-def _smooth(triangles: Indices, free: _Mask, fields: tuple[Doubles, ...]) -> None:
-    """Even fields out over the skin where it is ``free``: nearest points of an edge jump where the edge is hollow."""
-    start, end = triangles.ravel(), np.roll(triangles, -1, axis=1).ravel()  # each inner edge in both directions
-    count = np.bincount(start, minlength=len(free))
-    for field in fields:
-        for _ in range(_EVENINGS):
-            around = np.bincount(start, field[end], len(free)) / np.maximum(count, 1)
-            field[free] += 0.5 * (around - field)[free]
-
-
 def _sphincter(model: HeadModel, arms: Doubles, free: Doubles) -> tuple[Doubles, Doubles]:
     """Waters' sphincter with a smooth rim: lateral and upward way in metres of a full contraction, z unchanged."""
     unit, ring = model.landmarks.eye_separation, model.eyelids.sphincter
@@ -229,13 +271,7 @@ def _sphincter(model: HeadModel, arms: Doubles, free: Doubles) -> tuple[Doubles,
     x, y = arms[:, 0] - middle[0], (arms[:, 1] - middle[1]) / height
     x = x / np.where(x > 0, temple, nose)
     distance = np.hypot(x, y)
-    strength = unit * free * _fade(distance, _RISE, 1.0) * (arms[:, 2] > -model.eyes.radius)
+    strength = unit * free * falloff(distance, _RISE, 1.0) * (arms[:, 2] > -model.eyes.radius)
     x, y = x / np.maximum(distance, 1e-6), y / np.maximum(distance, 1e-6)
     across = -ring.inward * np.where(x > 0, 1.0, _NASAL) * x * strength
     return across, -np.where(y > 0, ring.down, ring.up) * y * strength
-
-
-def _fade(value: Doubles, start: float, end: float) -> Doubles:
-    """1 up to ``start``, 0 from ``end``, smooth between."""
-    t = np.clip((value - start) / (end - start), 0.0, 1.0)
-    return 1.0 - t * t * (3.0 - 2.0 * t)

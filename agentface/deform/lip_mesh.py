@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from agentface.conventions import Doubles, Floats, Indices
-from agentface.deform.lip_surface import COLUMNS, weights
+from agentface.deform.lip_surface import COLUMNS, moved_with, weights
 from agentface.deform.lips import LipTables
 from agentface.errors import InvalidValueError
 
@@ -50,9 +50,8 @@ def patch_mesh(tables: LipTables, per_cell: int) -> FineLips:
     patch = ring[:, None, :, None] * columns + column[None, :, None, :]
     shape = (len(at_ring), len(at_column))
     along = (of_ring * tables.along[ring].astype(np.float64)).sum(1)
-    controls, weight = weights(
-        _across(tables, at_column) + np.zeros(shape), along.clip(0, 1)[:, None] + np.zeros(shape)
-    )
+    across, at_along = _across(tables, at_column) + np.zeros(shape), along.clip(0, 1)[:, None] + np.zeros(shape)
+    controls, weight = weights(moved_with(across, at_along), at_along)
     return FineLips(
         *shape,
         patch=np.broadcast_to(patch, share.shape).reshape(-1, 16).astype(np.int32),

@@ -7,10 +7,13 @@ import numpy as np
 from agentface.conventions import Doubles, Indices
 from agentface.deform import bspline
 from agentface.deform.lip_grid import LipGrid, column_places
+from agentface.smoothstep import smoothstep
 
 COLUMNS, ROWS = 24, 6
 """The control grid; control point ``column * ROWS + row``, column 0 at the left corner, 6 in the upper lip's middle,
 row 0 inside the mouth, row 5 on the skin."""
+_ROUND, _ROUND_ALONG = 1.5, (0.5, 0.85)
+"""Columns from a corner of the mouth over which it opens round, and where along the surface that ends."""
 _STIFFNESS = 0.06  # how strongly the fit prefers an even control grid to the mesh's last tenth of a millimetre
 
 
@@ -33,6 +36,21 @@ def grid_places(grid: LipGrid, points: Doubles) -> tuple[Doubles, Doubles]:
     along = np.concatenate([[0.0], np.cumsum(steps)]) / steps.sum()
     along[-1] = 1.0
     return column_places(grid, points, COLUMNS), along
+
+
+def moved_with(across: Doubles, along: Doubles) -> Doubles:
+    """``(..., )`` 0..24: the place across the surface whose movement a point at ``across`` and ``along`` makes.
+
+    A spline of 24 columns opens like a wedge. Near the corners of the mouth, and less beyond the border of the red, a
+    point moves like one that is further from the corner, by the root of its own distance: the mouth opens round.
+    """
+    half = COLUMNS / 2
+    off = (across + 0.5 * half) % half - 0.5 * half  # from the nearer corner
+    far = np.abs(off)
+    root = _ROUND * (far / _ROUND) ** 0.65
+    near = 1.0 - smoothstep(0.0, 1.6 * _ROUND, far)
+    share = 1.0 - smoothstep(*_ROUND_ALONG, along)
+    return np.asarray((across + np.sign(off) * near * share * (root - far)) % COLUMNS)
 
 
 def fit(index: Indices, weight: Doubles, places: Doubles) -> Doubles:

@@ -15,7 +15,7 @@ from agentface.anatomy.model import HeadModel
 from agentface.conventions import Doubles, Floats, Indices
 from agentface.deform.lip_grid import SEAM_RING, lip_grid
 from agentface.deform.lip_skirt import skirt as lip_skirt
-from agentface.deform.lip_surface import COLUMNS, control_places, fit, grid_places, weights
+from agentface.deform.lip_surface import COLUMNS, control_places, fit, grid_places, moved_with, weights
 from agentface.deform.orbicularis_oris import contractions
 from agentface.parameters import indices_of
 
@@ -72,10 +72,12 @@ def prepare(model: HeadModel) -> LipTables:
     """The tables of a face; raises InvalidValueError where the mesh round its mouth is no grid."""
     grid, points = lip_grid(model), model.vertices.astype(np.float64)
     across, along = grid_places(grid, points)
-    index, weight = weights(np.broadcast_to(across, grid.vertices.shape), along[:, None] + 0.0 * across)
-    index, weight = index.reshape(-1, 16), weight.reshape(-1, 16)
+    places = np.broadcast_to(across, grid.vertices.shape), along[:, None] + 0.0 * across
     patch = grid.vertices.ravel()
-    control = fit(index, weight, points[patch])
+    index, weight = weights(*places)
+    control = fit(index.reshape(-1, 16), weight.reshape(-1, 16), points[patch])
+    index, weight = weights(moved_with(*places), places[1])
+    index, weight = index.reshape(-1, 16), weight.reshape(-1, 16)
     blend = np.ones(grid.vertices.shape)
     blend[: len(_BLEND)] = np.array(_BLEND)[:, None]
     blend[-len(_OUTER_BLEND) :] = np.array(_OUTER_BLEND)[::-1, None]

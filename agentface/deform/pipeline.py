@@ -16,7 +16,20 @@ from agentface.deform.normals import NormalField
 from agentface.deform.ranges import check_pose
 from agentface.parameters import VECTOR_MUSCLES, FacePose, indices_of
 
-_PARTS = ("limits", "lips", "eyelids", "jaw", "contact", "squash", "between", "wrinkles", "shading", "eyes", "head")
+_PARTS = (
+    "limits",
+    "lips",
+    "eyelids",
+    "volumes",
+    "jaw",
+    "contact",
+    "squash",
+    "between",
+    "wrinkles",
+    "shading",
+    "eyes",
+    "head",
+)
 
 
 class Deformer(Protocol):
@@ -77,6 +90,7 @@ class GeometricDeformer:
             "limits": lambda _: part["limits"].apply(tables.limits, points),
             "orbicularis_oris": lambda values: part["lips"].contract(tables.lips, values, points),
             "eyelids": lambda values: part["eyelids"].apply(tables.eyelids, values, points),
+            "volumes": lambda values: part["volumes"].apply(tables.volumes, values, points),
             "jaw": lambda values: part["jaw"].apply(tables.jaw, values, points),
             "lips": lambda _: part["lips"].surface(tables.lips, points),
             "contact": lambda values: part["contact"].apply(tables.contact, values, points),

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from agentface.anatomy.model import HeadModel
+from agentface.anatomy.ring_names import LidRing
 from agentface.conventions import SIDES, Floats, Indices
 
 _LINING_DEPTHS = ((0.0, 1.0), (0.004, 0.98), (0.012, 0.90))
@@ -43,7 +44,7 @@ class AnchoredArray:
 
 def eye_lining(model: HeadModel, side: str) -> Anchored:
     """A funnel of flesh from the inner lid margin back along the eyeball: no gap shows the inside of the head."""
-    ring = model.eyelids.rings[side][0]
+    ring = model.eyelids.rings[side][LidRing.INNER_MARGIN]
     loop = np.array(ring.upper + ring.lower[-2:0:-1], np.int32)
     centre = model.eye_centre(side)
     rows = []

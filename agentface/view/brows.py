@@ -5,13 +5,13 @@ from __future__ import annotations
 import numpy as np
 
 from agentface.anatomy.model import HeadModel
+from agentface.anatomy.ring_names import LidRing
 from agentface.conventions import SIDES, Doubles, Floats, Indices
 from agentface.view.look import HairLook
 from agentface.view.ribbons import Hairs, Roots, roots_along, roots_in_front, unit_rows
 
 _BROW_HAIRS = 520
 _UPPER_LASHES, _LOWER_LASHES = 90, 42
-_LASH_RING = 2
 _REFERENCE_EYES = 0.0525
 """The distance between the pupils, metres, that the sizes below are meant for."""
 
@@ -80,7 +80,7 @@ def brow_hairs(model: HeadModel, normals: Floats, look: HairLook, rng: np.random
     x = np.cross(up, n)
     lift = np.array([0.0010, 0.0009]) * line.scale * (0.5 + rng.random((2 * count, 1)))
     curves = flat[..., :1] * x[:, None] + flat[..., 1:] * up[:, None] + lift[..., None] * n[:, None]
-    radii = (0.00017 + 0.00010 * rng.random(2 * count)) * line.scale
+    radii = (0.00011 + 0.00008 * rng.random(2 * count)) * line.scale
     paint = np.column_stack([_shades(look.brow_colour, 0.4 * look.grey, 2 * count, rng), np.full(2 * count, 0.85)])
     return Hairs.grown(roots, (model.vertices, normals), curves[:, 0], curves[:, 1], radii, paint)
 
@@ -99,18 +99,18 @@ def lash_hairs(model: HeadModel, normals: Floats, look: HairLook, rng: np.random
 def _lash_row(
     model: HeadModel, normals: Floats, side: str, *, upper: bool, count: int, length: float, rng: np.random.Generator
 ) -> Hairs:
-    ring = model.eyelids.rings[side][_LASH_RING]
+    ring = model.eyelids.rings[side][LidRing.LASHES]
     half = np.array(ring.upper if upper else ring.lower, np.int32)
     half = half if side == "l" else half[::-1]  # from the temple inward on both sides
     outward = np.linspace(0.95, 0.10, count) + rng.normal(0, 0.006, count)  # 1 at the temple
     roots = roots_along(half, model.vertices, np.clip(1 - outward, 0.0, 1.0))
     lengths = (length * (0.55 + 0.55 * outward) * (0.8 + 0.35 * rng.random(count)))[:, None]
-    fan = ((outward - 0.45) * 1.1 + rng.normal(0, 0.10, count))[:, None] * (1.0 if side == "l" else -1.0)
-    rise = (0.0, 0.62) if upper else (-0.10, -0.35)
+    fan = ((outward - 0.45) * 1.1 + rng.normal(0, 0.16, count))[:, None] * (1.0 if side == "l" else -1.0)
+    rise = (-0.10, 0.50) if upper else (-0.10, -0.35)
     reach = (0.50, 0.68) if upper else (0.60, 0.90)
     bends = lengths * np.concatenate([0.35 * fan, np.full_like(fan, rise[0]), np.full_like(fan, reach[0])], axis=1)
     tips = lengths * np.concatenate([0.75 * fan, np.full_like(fan, rise[1]), np.full_like(fan, reach[1])], axis=1)
-    radii = (0.00024 if upper else 0.00016) * (0.8 + 0.4 * rng.random(count))
+    radii = (0.00017 if upper else 0.00010) * (0.8 + 0.4 * rng.random(count))
     paint = np.tile([0.008, 0.006, 0.005, 0.9 if upper else 0.65], (count, 1))
     return Hairs.grown(roots, (model.vertices, normals), bends, tips, radii, paint)
 

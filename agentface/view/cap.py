@@ -7,16 +7,17 @@ from typing import Any
 import numpy as np
 
 from agentface.anatomy.model import HeadModel
+from agentface.anatomy.normals import vertex_normals
 from agentface.conventions import Floats, Indices
 from agentface.view.anchored import Anchored, AnchoredArray
 from agentface.view.hair import Hairline
 from agentface.view.look import HairLook
-from agentface.view.refine import refine, vertex_normals
+from agentface.view.refine import refine
 from agentface.view.ribbons import unit_rows
 
 _THICKNESS = {"cropped": 0.0028, "swept": 0.0010, "bob": 0.0010, "bun": 0.0010}
 _OPAQUE = 0.97
-_STRIP = {"cropped": 0.016, "swept": 0.013, "bob": 0.012, "bun": 0.013}
+_STRIP = {"cropped": 0.013, "swept": 0.013, "bob": 0.008, "bun": 0.013}
 """Metres in which it fades in behind the hairline."""
 
 
@@ -48,8 +49,7 @@ def scalp_cap(model: HeadModel, line: Hairline, look: HairLook) -> Anchored:
     chosen = over[model.triangles].max(1) > -0.012
     used, local = np.unique(model.triangles[chosen], return_inverse=True)
     triangles: Indices = local.reshape(-1, 3).astype(np.int32)
-    all_normals = vertex_normals(model.vertices, model.triangles)
-    places, normals = model.vertices[used], all_normals[used]
+    places, normals = model.vertices[used], model.normals[used]
     light = model.shade[used, :1]
     mesh = refine(triangles, len(places))
     places = mesh.positions(places, normals)

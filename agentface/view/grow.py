@@ -29,10 +29,10 @@ _GUIDES, _GUIDE_POINTS = 420, 60
 _GUIDE_SEED = 7
 _WAVE = 0.090
 """Metres from wave to wave of wavy hair."""
-_LOCKS_BEHIND = 0.007
+_LOCKS_BEHIND = 0.004
 """Metres behind the hairline where locks begin; single hairs stand before them."""
 _HAIRS_ELSEWHERE = 0.05
-_STRAY = 0.08
+_STRAY = 0.16
 """The part of the single hairs that leave their lock."""
 _FULL = 0.050
 """Metres of locks that are as wide as locks get."""

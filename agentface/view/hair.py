@@ -16,7 +16,7 @@ from agentface.view.ribbons import unit_rows
 # in distances between the pupils.
 _AZIMUTH_DEG = (0, 12, 24, 32, 38, 43, 47, 51, 55, 59, 63, 67, 72, 84, 90, 97, 105, 118, 150, 180)
 _HEIGHT = (
-    1.0, 1.0, 0.985, 0.95, 0.86, 0.70, 0.52, 0.26, -0.06, -0.28,
+    1.0, 0.992, 0.955, 0.885, 0.79, 0.65, 0.48, 0.24, -0.06, -0.28,
     -0.36, -0.36, -0.36, -0.36, -0.40, -0.56, -0.85, -1.05, -1.18, -1.22,
 )  # fmt: skip
 _AXIS_Z = -0.69
@@ -48,7 +48,8 @@ class Hairline:
         above = points[:, 1] - np.where(height > 0, height * self.top, height * self.unit)
         y, z = points[:, 1] / self.unit + 0.40, points[:, 2] / self.unit + 0.24
         off_ear = (np.hypot(y / 0.54, (z + 0.25 * y) / 0.40) - 1) * 0.42 * self.unit
-        return np.asarray(np.minimum(above, off_ear))
+        # a hairline is not a line
+        return np.asarray(np.minimum(above, off_ear)) + _uneven(points)
 
     def over(self, model: HeadModel) -> Doubles:
         """``(V,)`` metres behind the hairline for the vertices of the skin."""
@@ -85,7 +86,6 @@ class HairRoots:
         corners = triangles[drawn]
         places = (model.vertices[corners] * weights[..., None]).sum(1)
         depth = line.behind(places)
-        # a hairline is not a line
         depth += 0.0020 * _wave(places * 190.0) + 0.0012 * _wave(places * 520.0)
         grown = (depth > _SOFT * (rng.random(len(depth)) ** 1.5 - 0.35)) & (depth >= behind)
         grown &= (depth < _STRIP) | (rng.random(len(depth)) < elsewhere)
@@ -116,6 +116,14 @@ def hair_shade(model: HeadModel, look: HairLook) -> Doubles:
     before = np.maximum(-line.over(model), 0.0)
     thick = min(look.volume * _SHADE[look.style], 1.0)
     return np.asarray(np.maximum(thick * np.exp(-before / _SHADE_REACH), 0.5 * hidden(model, line, look)))
+
+
+def _uneven(points: Floats | Doubles) -> Doubles:
+    """``(N,)`` m: how far a hairline wanders; not the same on both sides."""
+    x, z = points[:, 0], points[:, 2]
+    return np.asarray(
+        0.0018 * np.sin(130.0 * x + 1.0) + 0.0012 * np.sin(310.0 * x + 60.0 * z) + 0.0008 * np.sin(720.0 * x + 2.0)
+    )
 
 
 def _wave(points: Doubles) -> Doubles:

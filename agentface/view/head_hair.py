@@ -13,7 +13,6 @@ from agentface.view.cap import Cap, scalp_cap
 from agentface.view.grow import grow
 from agentface.view.hair import Hairline
 from agentface.view.look import HairLook
-from agentface.view.refine import vertex_normals
 from agentface.view.strands import StrandArray
 
 _SEED = 20
@@ -58,7 +57,6 @@ class HeadHair:
     def _strands_for(self, quality: str) -> StrandArray:
         if quality not in self._strands:
             model = self._model
-            normals = vertex_normals(model.vertices, model.triangles)
-            strands = grow(model, normals, self._look, quality, np.random.default_rng(_SEED))
+            strands = grow(model, model.normals, self._look, quality, np.random.default_rng(_SEED))
             self._strands[quality] = StrandArray(self._context, self._program, strands, model, self._centre)
         return self._strands[quality]

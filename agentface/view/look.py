@@ -26,6 +26,7 @@ class SkinLook(Table):
     tone: _Colour
     lips: _Colour
     shine: _Fraction
+    stubble: _Fraction = 0.0
     texture: str | None = None
     texture_strength: _Fraction = 1.0
 
@@ -81,6 +82,7 @@ class Look(Table):
     eyes: EyesLook
     hair: HairLook
     cloth: _Colour
+    teeth: _Colour = [0.655, 0.61, 0.53]
     lights: Lights
     background_inner: _Colour
     background_outer: _Colour

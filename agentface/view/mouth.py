@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from agentface.anatomy.model import HeadModel
+from agentface.anatomy.ring_names import LipRing
 from agentface.conventions import Floats
 from agentface.deform.geometry import FaceGeometry
 from agentface.view.parts import RigidPart
@@ -19,7 +20,8 @@ class Mouth:
     def __init__(self, context: Any, program: Any, model: HeadModel) -> None:
         self._model = model
         self._parts = {name: _part(context, program, model, name) for name in ("teeth_upper", "teeth_lower", "tongue")}
-        ring = model.lips.rings[0]
+        ring = model.lips.rings[LipRing.LINING]
+        self._corners = ring.upper[0], ring.upper[-1]
         self._lips = [half[len(half) // 2 - 2 : len(half) // 2 + 3] for half in (ring.upper, ring.lower)]
 
     def draw(self, geometry: FaceGeometry) -> None:
@@ -33,6 +35,20 @@ class Mouth:
         wider = self._lip_gap(geometry.vertices) - self._lip_gap(self._model.vertices)
         opened = wider / (0.12 * self._model.landmarks.eye_separation)
         return min(1.0, 0.03 + 0.97 * max(0.0, opened))
+
+    def opening(self, geometry: FaceGeometry) -> dict[str, object]:
+        """The uniforms of ``shaders/mouth.glsl``."""
+        vertices = geometry.vertices
+        upper, lower = (vertices[ring] for ring in self._lips)
+        half = 0.5 * float(vertices[self._corners[0], 0] - vertices[self._corners[1], 0])
+        front = 0.5 * float(upper[:, 2].mean() + lower[:, 2].mean())
+        corner = vertices[list(self._corners), 1:].mean(0)
+        middle = 0.5 * float(upper[:, 1].mean() + lower[:, 1].mean())
+        return {
+            "mouth_light": self.light(geometry),
+            "mouth_opening": (float(upper[:, 1].mean()), float(lower[:, 1].mean()), abs(half), front),
+            "mouth_bow": (front - float(corner[1]), float(corner[0]) - middle),
+        }
 
     def _lip_gap(self, vertices: Floats) -> float:
         upper, lower = (vertices[ring, 1] for ring in self._lips)

@@ -7,9 +7,10 @@ from typing import Any
 import numpy as np
 
 from agentface.anatomy.model import HeadModel
+from agentface.anatomy.normals import vertex_normals
+from agentface.anatomy.ring_names import LidRing
 from agentface.conventions import Floats, Indices
 from agentface.deform.geometry import FaceGeometry
-from agentface.view.refine import vertex_normals
 
 
 class RigidPart:
@@ -49,7 +50,7 @@ class Eyeball:
         rows = np.concatenate([places, vertex_normals(places, mesh.triangles)], axis=1).astype(np.float32)
         layout = [(context.buffer(rows.tobytes()), "3f 3f", "place", "facing")]
         self.array = context.vertex_array(program, layout, context.buffer(mesh.triangles.tobytes()))
-        ring = model.eyelids.rings[side][1]
+        ring = model.eyelids.rings[side][LidRing.WET_LINE]
         self.lids = [np.array(half, np.int32) for half in (ring.upper, ring.lower)]
 
     def draw(self, geometry: FaceGeometry) -> None:

@@ -63,6 +63,7 @@ class Programs:
                 "shine": look.skin.shine,
                 "hair_colour": look.hair.colour,
                 "cloth": look.cloth,
+                "teeth": look.teeth,
                 "iris_inner": look.eyes.iris_inner,
                 "iris_outer": look.eyes.iris_outer,
                 "sclera": look.eyes.sclera,

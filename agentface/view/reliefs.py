@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -13,7 +13,6 @@ from agentface.anatomy.trains import relief
 from agentface.anatomy.wrinkles import PlacedTrain
 from agentface.conventions import Doubles, Floats, Indices
 from agentface.view.context import compile_program
-from agentface.view.refine import vertex_normals
 
 Relief = npt.NDArray[np.int16]
 
@@ -22,6 +21,8 @@ STEEPEST = 2.0
 """The slope whose root is 1, as in ``shaders/wrinkles.glsl``."""
 _AZIMUTH = 1.35  # rad, to both sides of the middle: ATLAS_AZIMUTH of shaders/atlas.glsl
 _LOWEST = 2e-6  # m
+_SOFTENINGS = 2  # of a relief, by a texel each
+_BROKEN = 0.5  # how much lower rows of lines are here and there; a single fold by a third of that
 _CREASE_SHADE = 0.5  # of the light that the bottom of a crease misses: CREASE_SHADE there
 _GAMMA = 0.48  # from light to the picture, about
 _FAR_ROUND = 2.2  # rad; triangles beyond would cross the atlas where the azimuth jumps
@@ -61,6 +62,17 @@ class Patch:
         change = np.clip(np.maximum(light, 0.0) ** _GAMMA - 1.0, -1.0, 1.0)
         texels = np.concatenate([self.slopes, np.stack([self.creases, change], axis=2)], axis=2)
         return np.asarray(np.round(127.0 * texels), np.int16)
+
+    def broken(self, field: Floats, strength: float) -> Patch:
+        """As irregular as skin: lower where ``field (S, S)`` is low."""
+        part = np.clip(field[self.rows, self.columns], 0.0, 1.0)
+        kept = np.float32(1 - strength) + np.float32(strength) * part * part * (3 - 2 * part)
+        return replace(
+            self,
+            heights=self.heights * kept,
+            slopes=self.slopes * np.sqrt(kept)[..., None],
+            creases=self.creases * kept,
+        )
 
     def shade(self, towards: Doubles) -> Floats:
         """``(h, w)``: by how much its slopes change wrapped light from a direction, as a part of that light."""
@@ -103,7 +115,7 @@ def patches(context: Any, model: HeadModel, height: tuple[float, float]) -> list
     triangles, shares = triangle.ravel()[covered], shares.reshape(-1, 3)[covered]
     corners = model.triangles[triangles]
     points = np.einsum("nc,ncx->nx", shares, model.vertices[corners])
-    normals = np.einsum("nc,ncx->nx", shares, vertex_normals(model.vertices, model.triangles)[corners])
+    normals = np.einsum("nc,ncx->nx", shares, model.normals[corners])
     spread: list[Patch] = []
     for placed in model.trains:
         if placed.name.endswith("_r"):  # the atlas is its own mirror image, and the left train comes first
@@ -115,7 +127,17 @@ def patches(context: Any, model: HeadModel, height: tuple[float, float]) -> list
         kept = raised[:, 0] > _LOWEST
         at = near[kept]
         spread.append(_patch(covered[at], raised[kept], np.hypot(points[at, 0], points[at, 2]), normals[at], height))
-    return spread
+    field = _patchy()
+    strengths = [_BROKEN if placed.train.count > 1 else _BROKEN / 3 for placed in model.trains]
+    return [patch.broken(field, strength) for patch, strength in zip(spread, strengths, strict=True)]
+
+
+def _patchy() -> Floats:
+    """``(S, S)`` 0..1: where lines are deep; the left half is not the right one's image."""
+    coarse = np.random.default_rng(7).uniform(0.0, 1.0, (SIDE // 16 + 1, SIDE // 32 + 1))
+    at = np.arange(SIDE)
+    wide = np.array([np.interp(at, np.arange(coarse.shape[1]) * 32, row) for row in coarse])
+    return np.array([np.interp(at, np.arange(coarse.shape[0]) * 16, column) for column in wide.T]).T.astype(np.float32)
 
 
 def _touched(model: HeadModel, placed: PlacedTrain) -> npt.NDArray[np.bool_]:
@@ -139,7 +161,7 @@ def _patch(where: Any, raised: Any, radius: Doubles, normals: Any, height: tuple
     image[..., 2], image[..., 5] = radius.mean(), 1.0
     image[row - rows.start, column - columns.start] = np.column_stack([raised, radius, normals])
     relief, around = image[..., :2], image[..., 2]
-    for _ in range(2):  # along both axes: a foot as sharp as a texel would show the texels as steps
+    for _ in range(2 * _SOFTENINGS):  # along both axes in turn: skin has rounded valleys, no edges
         before, after = np.pad(relief, [(1, 0), (0, 0), (0, 0)])[:-1], np.pad(relief, [(0, 1), (0, 0), (0, 0)])[1:]
         relief = (0.25 * before + 0.5 * relief + 0.25 * after).swapaxes(0, 1)
     upward, leftward = np.gradient(relief[..., 0])

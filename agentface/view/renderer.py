@@ -12,7 +12,7 @@ from agentface.deform.geometry import FaceGeometry
 from agentface.view.anchored import AnchoredArray, eye_linings
 from agentface.view.brows import BrowLine, brow_hairs, lash_hairs
 from agentface.view.camera import Camera, named_view
-from agentface.view.complexion import complexion
+from agentface.view.complexion import complexion, corner_pockets, lid_creases
 from agentface.view.context import Witness, make_current, open_context, shader_names
 from agentface.view.frame import pack_frame, pixels_a_metre, shadow_projection, unit
 from agentface.view.hair import Hairline, hair_shade, hidden
@@ -23,7 +23,6 @@ from agentface.view.mouth import Mouth
 from agentface.view.noise import SIDE, noise_volume
 from agentface.view.parts import Eyeball, RigidPart
 from agentface.view.programs import FRAME_BINDING, Programs
-from agentface.view.refine import vertex_normals
 from agentface.view.ribbons import HairArray
 from agentface.view.shadow import KeyShadow
 from agentface.view.shirt import shirt
@@ -36,7 +35,7 @@ from agentface.view.wrinkles import WrinkleAtlas
 _SEED = 20
 _LIP_CUTS = 2
 _FRAME_BYTES = 3 * 64 + 11 * 16
-_IRIS_RADIUS = 0.445  # in radii of the eyeball
+_IRIS_RADIUS = 0.405  # in radii of the eyeball
 _LONGEST_EDGE = 16.0  # pixels; longer edges of fine skin are cut and curved
 _COARSEST, _FINEST = 6, 10  # the lengths of those edges are powers of two: 16 mm to 1 mm
 
@@ -70,7 +69,7 @@ class Renderer:
         lips = FineLips(model, _LIP_CUTS)
         self._fields = SkinFields(self.context, model, lips)
         self._wrinkles = WrinkleAtlas(self.context, model, unit(self.look.lights.key.towards), rng)
-        normals = vertex_normals(model.vertices, model.triangles)
+        normals = model.normals
         self._shadow = KeyShadow(self.context, self._programs.depth, model)
         self._meshes = SkinMeshes(self.context, model, lips, self._dressed(normals))
         self._skins: dict[tuple[str, int], Skin] = {}
@@ -155,7 +154,7 @@ class Renderer:
         self.upload_wrinkles(geometry)
         if tier.fine:
             self._fields.update_lips(geometry)
-        self._programs.set({"mouth_light": self._mouth.light(geometry)})
+        self._programs.set(self._mouth.opening(geometry))
         self._skin(quality, pixels_a_metre(seen_from, targets.size)).draw(wrinkled=self._wrinkled)
         self._begin(targets)
         self._draw_solids(geometry)
@@ -195,7 +194,6 @@ class Renderer:
         self.context.enable(self.context.CULL_FACE)
         self._mouth.draw(geometry)
         self._shirt.draw(np.eye(4, dtype=np.float32))
-        self._programs["lining"]["mouth_light"].value = 1.0
         for lining in self._linings:
             lining.draw()
         for eye in self._eyes:
@@ -248,8 +246,13 @@ class Renderer:
         if hair.style != "none":
             covered = np.maximum(covered, hidden(model, Hairline(model, hair.hairline), hair))
         dressed = {
-            "complexion": complexion(model, np.asarray(np.clip(covered, 0, 1), np.float32)),
-            "ambient": (model.shade[:, :1] * (1 - hair_shade(model, hair)[:, None])).astype(np.float32),
+            "complexion": complexion(model, np.asarray(np.clip(covered, 0, 1), np.float32), self.look.skin.stubble),
+            "ambient": (
+                _deepened(model.shade[:, :1])
+                * (1 - hair_shade(model, hair)[:, None])
+                * (1 - 0.35 * corner_pockets(model)[:, None])
+                * (1 - 0.65 * lid_creases(model)[:, None])
+            ).astype(np.float32),
             "lit_at_rest": self._lit_at_rest(normals),
         }
         if self._picture is not None:
@@ -263,6 +266,11 @@ class Renderer:
                 self._targets.pop(next(iter(self._targets))).release()
             self._targets[key] = Targets.make(self.context, *key)
         return self._targets[key]
+
+
+def _deepened(shade: Floats) -> Floats:
+    """Ambient light whose darkest places, nostrils above all, are darker still: what one sees there is a hole."""
+    return np.asarray(shade * np.clip(0.25 + 1.5 * shade, 0.0, 1.0), np.float32)
 
 
 def _shirt(context: Any, program: Any, model: HeadModel) -> RigidPart:

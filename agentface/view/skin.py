@@ -11,10 +11,10 @@ from agentface.anatomy.model import HeadModel
 from agentface.conventions import Floats, Indices
 from agentface.deform.geometry import FaceGeometry
 from agentface.errors import InvalidValueError
-from agentface.view.complexion import blurred
+from agentface.view.complexion import blurred, softened_corners
 from agentface.view.lips import FineLips
 from agentface.view.neck import Neck
-from agentface.view.refine import Refined, refine, unrefined, vertex_normals
+from agentface.view.refine import Refined, refine, unrefined
 from agentface.view.shirt import uncovered
 
 _COLUMNS = 256
@@ -67,12 +67,11 @@ class SkinMeshes:
     def __init__(self, context: Any, model: HeadModel, lips: FineLips, dressed: dict[str, Floats]) -> None:
         self._context, self._model, self._lips = context, model, lips
         self._triangles = uncovered(model)
-        normals = vertex_normals(model.vertices, model.triangles)
         fields = {
             "rest": model.vertices,
-            "soft_normal": blurred(normals, model.triangles, _BLUR),
-            "rest_normal": normals,
-            "material": model.material,
+            "soft_normal": blurred(model.normals, model.triangles, _BLUR),
+            "rest_normal": model.normals,
+            "material": softened_corners(model),
             **dressed,
         }
         self._fields = [(name, field, lips.extended(field)) for name, field in fields.items()]

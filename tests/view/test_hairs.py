@@ -14,7 +14,7 @@ from agentface.view.grow import grow
 from agentface.view.hair import Hairline, hair_shade
 from agentface.view.hull import Hull
 from agentface.view.look import load_look
-from agentface.view.refine import vertex_normals
+from agentface.anatomy.normals import vertex_normals
 from agentface.view.renderer import Renderer
 from agentface.view.ribbons import roots_along, roots_in_front
 from agentface.view.visible import unhidden

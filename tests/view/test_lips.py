@@ -8,7 +8,8 @@ import pytest
 from agentface.deform import lips as deformer
 from agentface.parameters import FacePose
 from agentface.view.lips import FineLips
-from agentface.view.refine import refine, vertex_normals
+from agentface.view.refine import refine
+from agentface.anatomy.normals import vertex_normals
 from tests.heads import head_model
 
 FACES = {face: head_model(face) for face in ("amber", "onyx")}

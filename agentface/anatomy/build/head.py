@@ -9,14 +9,17 @@ from typing import Any
 import numpy as np
 
 from agentface.anatomy.build import mouth_parts
+from agentface.anatomy.build.fold import fold_lids
 from agentface.anatomy.build.identity import Recipe, close_lips, person
 from agentface.anatomy.build.jaw import JawShares, jaw_shares
-from agentface.anatomy.build.partition import Loops, base_labels, find_loops, order_by_region, partition, ranges
+from agentface.anatomy.build.partition import Loops, base_labels, find_loops, halves, order_by_region, partition, ranges
 from agentface.anatomy.build.source import BaseMesh
+from agentface.anatomy.build.splits import WHOLE, across_rings, between_rings
 from agentface.anatomy.build.thin import Thinner
 from agentface.anatomy.build.topology import Skin
 from agentface.anatomy.glb import MeshArrays, Shape
 from agentface.anatomy.regions import REGIONS, REST
+from agentface.anatomy.ring_names import LidRing, LipRing
 from agentface.conventions import Doubles, Indices
 
 _FACE, _BAG, _BODY, _SOCKETS = 0, 1, 2, {"r": 3, "l": 6}
@@ -24,6 +27,10 @@ _NECK_BOTTOM = 5.6
 _THINNED, _THINNED_EARS = 120, 60
 _SMALLEST_OFFSET = 5e-6
 METRES = 0.1
+_LID_SPLITS = (6, 7, 8)
+"""Base rings of the lids behind which another one is put in: the crease above the upper lid is deep and narrow."""
+_CORNER_SPLITS = (0, 1, 2)
+"""Edges of the lower lip from its corner on through which another column is put in, where the base mesh is coarse."""
 
 # Landmarks that are vertices of the base mesh; left ones, whose mirror images are the right ones.
 _EXACT = {
@@ -64,7 +71,8 @@ class HeadTopology:
         sockets = {side: quads[island == number] for side, number in _SOCKETS.items()}
         self.loops: Loops = find_loops(quads[island == _FACE], quads[island == _BAG], sockets)
         self.bag_vertices = np.setdiff1d(quads[island == _BAG], self.loops.lips[0])
-        self.skin = Skin(self.quads, self._levels(island[chosen]), mesh.positions, mesh.mirror)
+        levels = self._levels(island[chosen])
+        self.skin = Skin(self.quads, levels, mesh.positions, mesh.mirror, self._splits(levels))
         self.points: Doubles
         self.region: Indices
         self.sub: Indices
@@ -87,10 +95,22 @@ class HeadTopology:
         wanted[(y > 7.18) & (y <= 7.46) & (x < 0.14) & (z > 1.2)] = 0.026
         wanted[(y > 7.44) & (y < 7.94) & (z > 0.92) & (x < 0.60)] = 0.036
         wanted[(y > 7.44) & (y < 7.86) & (z > 0.92) & (x < 0.50)] = 0.0195
-        whole = [*self.loops.lips[:8], *(ring for rings in self.loops.lids.values() for ring in rings[:8])]
+        whole = [*self.loops.lips[: LipRing.SKIN], *(ring for rings in self.loops.lids.values() for ring in rings[:8])]
         wanted[(island == _BAG) | np.isin(self.quads, np.concatenate(whole)).any(1)] = 1e3
         edge = np.linalg.norm(corners - np.roll(corners, 1, 1), axis=2).mean(1)
         return np.clip(np.round(np.log2(edge / wanted)), 0, 2).astype(np.int32)
+
+    def _splits(self, levels: Indices) -> Indices:
+        """How to halve each quad that is not subdivided."""
+        result = np.zeros(len(self.quads), np.int32)
+        for lids in self.loops.lids.values():
+            for depth in _LID_SPLITS:
+                result = np.maximum(result, between_rings(self.quads, lids[depth], lids[depth + 1]))
+        lower = halves(self.loops.lips[0], self.mesh.positions)[1]
+        edges = [(lower[i], lower[i + 1]) for i in _CORNER_SPLITS]
+        edges += [(lower[-1 - i], lower[-2 - i]) for i in _CORNER_SPLITS]
+        result = np.maximum(result, across_rings(self.quads, edges, [set(ring) for ring in self.loops.ends]))
+        return np.where(levels == 0, result, WHOLE).astype(np.int32)
 
     def _partition(self) -> None:
         mesh, skin = self.mesh, self.skin
@@ -119,9 +139,33 @@ class HeadTopology:
         (where,) = np.flatnonzero(self.skin.kept == base_vertex)
         return int(where)
 
-    def ring(self, base_ring: list[int]) -> list[int]:
-        """A ring of base vertices as skin vertices."""
-        return [self._index_of(vertex) for vertex in base_ring]
+    def _between(self, inner: list[int], outer: list[int]) -> tuple[list[int], list[int]]:
+        """The ring that was put in between two base rings."""
+        beside = {a: self.skin.middle(a, b) for a in inner for b in outer if self.skin.middle(a, b) in self._place}
+        upper, lower = ([self._place[beside[vertex]] for vertex in half] for half in halves(inner, self.mesh.positions))
+        return upper, lower
+
+    @cached_property
+    def _place(self) -> dict[int, int]:
+        return {int(vertex): place for place, vertex in enumerate(self.skin.kept)}
+
+    def halves(self, base_ring: list[int]) -> tuple[list[int], list[int]]:
+        """A ring of base vertices as skin vertices, with those put in between: the upper half and the lower half."""
+        upper, lower = (
+            [self._place[vertex] for vertex in self.skin.with_middles(half, self._place)]
+            for half in halves(base_ring, self.mesh.positions)
+        )
+        return upper, lower
+
+    def lid_rings(self, side: str) -> list[tuple[list[int], list[int]]]:
+        """The rings of an eye in the order of :class:`LidRing`."""
+        base = self.loops.lids[side]
+        rings = []
+        for depth, ring in enumerate(base):
+            rings.append(self.halves(ring))
+            if depth in _LID_SPLITS:
+                rings.append(self._between(ring, base[depth + 1]))
+        return rings
 
     @cached_property
     def landmarks(self) -> dict[str, dict[str, Any]]:
@@ -142,11 +186,9 @@ class HeadTopology:
         }
 
     def _lid_middle(self, half: int) -> int:
-        from agentface.anatomy.build.partition import halves
-
-        ring = halves(self.loops.lids["l"][3], self.mesh.positions)[half]
-        middle = 0.5 * (self.mesh.positions[ring, 0].min() + self.mesh.positions[ring, 0].max())
-        return self._index_of(min(ring, key=lambda vertex: abs(self.mesh.positions[vertex, 0] - middle)))
+        ring = self.lid_rings("l")[LidRing.EDGE][half]
+        across = self.points[ring, 0]
+        return ring[int(np.abs(across - 0.5 * (across.min() + across.max())).argmin())]
 
     @cached_property
     def material(self) -> Doubles:
@@ -157,7 +199,7 @@ class HeadTopology:
             lip[ring] = 1.0 if depth <= 6 else (0.45 if depth == 7 else 0.0)
         for depth, ring in enumerate(self.loops.mouth[:3]):
             lip[ring] = 1.0 if depth < 2 else 0.6
-            mouth[ring] = 0.0
+            mouth[ring] = (0.30, 0.60, 0.85)[depth]  # their backs lie in the shade of the mouth
         for rings_of_eye in self.loops.lids.values():
             for depth, weight in enumerate((1.0, 1.0, 0.8, 0.25)):
                 wet[rings_of_eye[depth]] = weight
@@ -185,16 +227,17 @@ def build_head(topology: HeadTopology, recipe: Recipe, jaw_table: JawShares) -> 
     centre = np.array(
         [0.5 * (eye[:, 0].max() + eye[:, 0].min()), 0.5 * (eye[:, 1].max() + eye[:, 1].min()), eye[:, 2].min() + radius]
     )
-    ear = skin.place(base)[topology.landmarks["ear_front_l"]["vertices"]][0]
+    points = fold_lids(topology, skin.place(base), recipe.lid_fold, centre)
+    ear = points[topology.landmarks["ear_front_l"]["vertices"]][0]
     origin = np.array([0.0, centre[1], ear[2]])
     shapes = {name: skin.place(mesh.face_unit(name)) for name in mesh.face_units()}
-    guide = _artists_jaw(skin.place(base) - origin, shapes["jawOpen"], *hinge(base, mesh, origin))
-    jaw = jaw_shares(topology, skin.place(base), guide, jaw_table, unit=2.0 * centre[0])
+    guide = _artists_jaw(points - origin, shapes["jawOpen"], *hinge(base, mesh, origin))
+    jaw = jaw_shares(topology, points, guide, jaw_table, unit=2.0 * centre[0])
     meshes = {
         "skin": MeshArrays(
             skin.triangles,
             {
-                "POSITION": _metres(skin.place(base) - origin),
+                "POSITION": _metres(points - origin),
                 "_MATERIAL": _bytes(topology.material),
                 "_SHADE": _bytes(np.tile([1.0, 0, 0, 0], (len(skin.kept), 1))),
                 "_JAW": jaw.astype(np.float32),

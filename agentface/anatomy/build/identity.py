@@ -7,6 +7,7 @@ from typing import Annotated
 import numpy as np
 from pydantic import Field
 
+from agentface.anatomy.build.fold import LidFold
 from agentface.anatomy.build.partition import Loops, halves
 from agentface.anatomy.build.source import BaseMesh
 from agentface.anatomy.build.topology import Skin
@@ -28,6 +29,7 @@ class Recipe(Table):
     ancestry: dict[str, Weight]
     targets: dict[str, Weight]
     resting_shapes: dict[str, Weight] = {}
+    lid_fold: LidFold = LidFold()
 
 
 def person(mesh: BaseMesh, recipe: Recipe) -> Doubles:

@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING, Annotated
 import numpy as np
 from pydantic import Field
 
-from agentface.anatomy.build.partition import halves
 from agentface.config import Table
 from agentface.conventions import Doubles, Indices
 
@@ -20,7 +19,7 @@ _Share = Annotated[float, Field(ge=0, le=1)]
 
 
 class LipShare(Table):
-    """The part of the jaw's turn that the middle of a lip makes, and its outline's shape: 1 straight, 2 an ellipse."""
+    """The part of the jaw's turn that the middle of a lip makes, and its outline's shape: 1 straight, 2 a parabola."""
 
     middle: _Share
     roundness: Annotated[float, Field(ge=1, le=3)]
@@ -59,18 +58,17 @@ def _on_the_lips(
 ) -> tuple[np.typing.NDArray[np.bool_], Doubles]:
     """Which vertices the lips' shares hold for, and the shares ``(V,)``.
 
-    A lip's middle and the corner have theirs; between them they follow a superellipse over the way along the lip, so
-    that the opening is an oval.
+    A lip's middle and the corner have theirs; between them they follow a parabola over the way along the lip, so that
+    the opening is an oval; its round ends are the lips' own (``deform.lip_surface.moved_with``).
     """
     wanted, fixed = np.zeros(len(points)), np.zeros(len(points), np.bool_)
     rings = [*topology.loops.lips[:-1], *topology.loops.mouth[:_INNER_RINGS]]
     for ring in rings:
-        for half, lip in zip(halves(ring, topology.mesh.positions), (shares.upper_lip, shares.lower_lip), strict=True):
-            vertices = topology.ring(half)
+        for vertices, lip in zip(topology.halves(ring), (shares.upper_lip, shares.lower_lip), strict=True):
             steps = np.linalg.norm(np.diff(points[vertices], axis=0), axis=1)
             way = np.concatenate([[0.0], np.cumsum(steps)])
             t = np.abs(2.0 * way / way[-1] - 1.0)
-            round_off = (1.0 - t**lip.roundness) ** (1.0 / lip.roundness)
+            round_off = 1.0 - t**lip.roundness
             wanted[vertices] = shares.corner + (lip.middle - shares.corner) * round_off
             fixed[vertices] = True
     return fixed, wanted

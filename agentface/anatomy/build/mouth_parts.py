@@ -9,13 +9,22 @@ import numpy as np
 from agentface.anatomy.build.subdivide import catmull_clark
 from agentface.conventions import Doubles, Indices
 
-# Mean mesiodistal widths and crown heights in millimetres, from the middle outward (Wheeler's dental anatomy).
-_UPPER = ((8.5, 10.5), (6.5, 9.0), (7.5, 10.0), (7.0, 8.5), (7.0, 8.5), (9.5, 7.5), (9.0, 7.0))
-_LOWER = ((5.2, 9.0), (5.6, 9.2), (6.8, 10.0), (7.0, 8.5), (7.1, 8.0), (10.0, 7.5), (9.5, 7.0))
+# Mean mesiodistal widths and crown heights in millimetres, from the middle outward (Wheeler's dental anatomy), and how
+# far the middle of the edge stands out over its sides: canines are pointed.
+_UPPER = ((8.5, 10.5, 0.3), (6.5, 9.0, 0.4), (7.5, 10.0, 1.6), (7.0, 8.5, 1.1), (7.0, 8.5, 0.8), (9.5, 7.5, 0.4),
+          (9.0, 7.0, 0.4))  # fmt: skip
+_LOWER = ((5.2, 9.0, 0.15), (5.6, 9.2, 0.2), (6.8, 10.0, 1.2), (7.0, 8.5, 0.9), (7.1, 8.0, 0.6), (10.0, 7.5, 0.4),
+          (9.5, 7.0, 0.4))  # fmt: skip
+_SMALLER = (0.90, 0.92, 0.9)
+"""The base mesh's heads are smaller than Wheeler's patients."""
 # The base mesh's strips are wider than an arch of single teeth, and its lower strip reaches high behind the upper one:
-# incisors overlap by two to three millimetres, and a parted mouth shows the edges of the upper ones.
-_ARCH_WIDTH, _SHOW_UPPER, _SINK_LOWER = 0.86, 0.016, 0.052
-_AROUND, _ALONG = 10, 4
+# the rows meet edge to edge, 2.5 mm below where the lips touch, so that a parted mouth shows the upper teeth.
+_ARCH_WIDTH, _SHOW_UPPER, _SINK_LOWER = 0.86, 0.026, 0.072
+_ACROSS = np.array([-1.0, -0.86, -0.5, 0.0, 0.5, 0.86, 1.0])
+# a crown's front from behind its edge to the gum: where, how wide, how far forward, both as parts
+_ROWS = ((0.03, 0.80, -1.4), (0.0, 0.86, 0.35), (0.10, 0.98, 0.75), (0.42, 1.03, 1.0), (1.0, 0.90, 0.75))
+_TONGUE_FLAT, _TONGUE_BACK = 0.72, 0.03
+"""At rest it lies low behind the lower teeth."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,11 +45,11 @@ def dental_arch(strip: Doubles, *, upper: bool) -> PartMesh:
     arch = np.stack([half_width * np.sin(turn), back + depth * np.cos(turn) ** 0.8], 1)
     length = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(arch, axis=0), axis=1))])
     edge = strip[:, 1].min() - _SHOW_UPPER if upper else strip[:, 1].max() - _SINK_LOWER
-    table = np.array(_UPPER if upper else _LOWER) / 100.0
+    table = np.array(_UPPER if upper else _LOWER) / 100.0 * _SMALLER
     table[:, 0] *= min(1.0, length[-1] * 0.98 / table[:, 0].sum())
     out = 1.0 if upper else -1.0
     crowns, start = [], 0.0
-    for width, height in table:
+    for width, height, point in table:
         middle = start + 0.5 * width
         start += width
         at = np.array([np.interp(middle, length, arch[:, 0]), edge, np.interp(middle, length, arch[:, 1])])
@@ -51,31 +60,34 @@ def dental_arch(strip: Doubles, *, upper: bool) -> PartMesh:
         across = np.array([ahead[0], 0.0, ahead[1]]) / np.hypot(*ahead)
         for side in (1.0, -1.0):
             flip = np.array([side, 1.0, 1.0])
-            crowns.append(_crown(at * flip, across * flip, width, height, out))
+            crowns.append(_crown(at * flip, across * flip, (width, height, point), out))
     crowns.append(_gum(arch, edge, out))
     return _joined(crowns)
 
 
-def _crown(at: Doubles, across: Doubles, width: float, height: float, out: float) -> PartMesh:
+def _crown(at: Doubles, across: Doubles, size: tuple[float, float, float], out: float) -> PartMesh:
+    """The front of a tooth with its edge; nobody sees it from behind."""
+    width, height, point = size
     outward = np.cross(across, [0.0, 1.0, 0.0])
     outward *= np.sign(outward[2] + 1e-9 + 0.3 * outward[0] * np.sign(at[0]))
-    turn = np.linspace(0, 2 * np.pi, _AROUND, endpoint=False)
+    thick = 0.022 + 0.25 * max(0.0, width - 0.07)
     rows = []
-    for t in np.linspace(0.0, 1.0, _ALONG):
-        # a crown is widest a third up from its edge, and narrows towards the gum
-        wide = 0.5 * width * (0.95 + 0.04 * np.sin(np.pi * min(1.0, t + 0.25)) - 0.10 * t)
-        thick = (0.010 + 0.026 * t**0.8) + 0.2 * max(0.0, width - 0.08)
-        ring = np.sign(np.cos(turn)) * np.abs(np.cos(turn)) ** 0.6, np.sign(np.sin(turn)) * np.abs(np.sin(turn)) ** 0.7
+    for up, wide, forward in _ROWS:
+        round_off = np.abs(_ACROSS)
+        front = forward * thick - (0.5 * thick + 0.12 * width) * round_off**3
+        edge = (point * round_off + 0.055 * width * round_off**4) * (1.0 - up) ** 3
         rows.append(
-            at + np.outer(ring[0] * wide, across) + np.outer(ring[1] * thick, outward) + [0, out * height * t, 0]
+            at
+            + np.outer(0.5 * width * wide * _ACROSS, across)
+            + np.outer(front, outward)
+            + np.outer(out * (height * up + edge), [0.0, 1.0, 0.0])
         )
-    cap = rows[0].mean(0) - [0, out * 0.004, 0]
-    positions = np.concatenate([*rows, [cap]])
-    faces = _tube(_AROUND, _ALONG, closed=True)
-    faces += [[(i + 1) % _AROUND, i, len(positions) - 1] for i in range(_AROUND)]
-    return PartMesh(
-        positions, _facing_out(positions, np.array(faces, np.int32)), np.tile([1.0, 0, 0, 0], (len(positions), 1))
-    )
+    positions = np.concatenate(rows)
+    faces = np.array(_tube(len(_ACROSS), len(rows), closed=False), np.int32)
+    a, b, c = (positions[faces[:, i]] for i in range(3))
+    inward = (np.cross(b - a, c - a) @ outward).sum() < 0
+    faces = faces[:, ::-1] if inward else faces
+    return PartMesh(positions, faces, np.tile([1.0, 0, 0, 0], (len(positions), 1)))
 
 
 def _gum(arch: Doubles, edge: float, out: float) -> PartMesh:
@@ -84,7 +96,7 @@ def _gum(arch: Doubles, edge: float, out: float) -> PartMesh:
     normal = np.stack([along[:, 1], -along[:, 0]], 1)
     normal /= np.linalg.norm(normal, axis=1, keepdims=True)
     normal *= np.sign(normal[len(normal) // 2, 1])
-    profile = ((0.031, 0.084), (0.044, 0.100), (0.048, 0.14), (0.036, 0.19), (-0.05, 0.19), (-0.05, 0.10))
+    profile = ((0.018, 0.052), (0.034, 0.074), (0.046, 0.12), (0.036, 0.19), (-0.05, 0.19), (-0.05, 0.10))
     rows = []
     short = 1.0 if out > 0 else 0.62  # below the lower incisors the chin leaves little room
     for offset, height in profile:
@@ -93,7 +105,7 @@ def _gum(arch: Doubles, edge: float, out: float) -> PartMesh:
     positions = np.concatenate(rows)
     faces = np.array(_tube(len(path), len(profile), closed=False), np.int32)
     faces = faces if out > 0 else faces[:, ::-1]
-    return PartMesh(positions, faces[:, ::-1], np.tile([0, 1.0, 0, 0], (len(positions), 1)))
+    return PartMesh(positions, faces, np.tile([0, 1.0, 0, 0], (len(positions), 1)))
 
 
 def tongue(positions: Doubles, quads: Indices) -> PartMesh:
@@ -102,6 +114,9 @@ def tongue(positions: Doubles, quads: Indices) -> PartMesh:
     local = inverse.reshape(-1, 4).astype(np.int32)
     level = catmull_clark(local, len(used))
     placed = np.asarray(level.matrix @ positions[used])
+    floor = placed[:, 1].min()
+    placed[:, 1] = floor + _TONGUE_FLAT * (placed[:, 1] - floor)
+    placed[:, 2] -= _TONGUE_BACK
     triangles = np.concatenate([level.quads[:, [0, 1, 2]], level.quads[:, [0, 2, 3]]])
     return PartMesh(placed, triangles.astype(np.int32), np.tile([0, 0, 1.0, 0], (len(placed), 1)))
 

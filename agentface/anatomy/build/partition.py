@@ -11,10 +11,11 @@ import numpy as np
 
 from agentface.anatomy.build.loops import border_loops, rings
 from agentface.anatomy.regions import HALF_REGIONS, REGIONS, REST, SUB_REGIONS
+from agentface.anatomy.ring_names import RINGS_BEYOND, RINGS_WITHIN, LipRing
 from agentface.conventions import SIDES, Doubles, Indices
 
-_LIP_RINGS_OUT, _LIP_RINGS_IN = 8, 6
-_VERMILION, _MUCOSA = 7, 2
+_RINGS_IN = 6
+_MUCOSA = 2
 _CORNER_FROM = 0.92
 _LID_RINGS, _LID_RINGS_IN_REGION = 10, 7
 _BROW = ((0.130, 7.455), (0.162, 7.457), (0.337, 7.502), (0.483, 7.452), (0.53, 7.41))
@@ -29,11 +30,13 @@ class Loops:
         lips: the lip seam, then the rings outward over the vermilion to the skin.
         mouth: the rings from the seam inward.
         lids: for each side, the lid's inner margin, then the rings outward.
+        ends: the rings on the skin and inside the mouth as far as the lips count on them.
     """
 
     lips: list[list[int]]
     mouth: list[list[int]]
     lids: dict[str, list[list[int]]]
+    ends: tuple[list[int], list[int]]
 
 
 def find_loops(face: Indices, bag: Indices, sockets: dict[str, Indices]) -> Loops:
@@ -43,7 +46,8 @@ def find_loops(face: Indices, bag: Indices, sockets: dict[str, Indices]) -> Loop
     for side, quads in sockets.items():
         margin = border_loops(quads)[0]
         lids[side] = [margin, *rings(margin, face, _LID_RINGS)]
-    return Loops([seam, *rings(seam, face, _LIP_RINGS_OUT)], rings(seam, bag, _LIP_RINGS_IN), lids)
+    outward, inward = rings(seam, face, LipRing.SKIN + RINGS_BEYOND), rings(seam, bag, RINGS_WITHIN)
+    return Loops([seam, *outward[: LipRing.SKIN]], inward[:_RINGS_IN], lids, (outward[-1], inward[-1]))
 
 
 def halves(ring: list[int], positions: Doubles) -> tuple[list[int], list[int]]:
@@ -70,7 +74,7 @@ def base_labels(positions: Doubles, loops: Loops) -> dict[str, Doubles]:
         # at the corners, where both lips end, height decides as on the skin beside them
         between = [vertex for vertex in lower if x[vertex] < _CORNER_FROM * x[lower].max()]
         above[between], above[upper] = -1.0, 1.0
-        lips[ring] = -_MUCOSA - 1 <= depth <= _VERMILION
+        lips[ring] = -_MUCOSA - 1 <= depth <= LipRing.BORDER
     for all_rings in loops.lids.values():
         for depth, ring in enumerate(all_rings):
             upper, lower = halves(ring, positions)

@@ -9,6 +9,7 @@ from agentface.anatomy.lids import LidMotion
 from agentface.anatomy.model import EyeHole
 from agentface.anatomy.orbicularis_oris import LipsMotion
 from agentface.anatomy.regions import Limits
+from agentface.anatomy.volumes import VolumeRow
 from agentface.anatomy.wrinkles import TrainRow
 from agentface.config import Table
 
@@ -24,3 +25,4 @@ class PartsFile(Table):
     lips: LipsMotion
     eyes: EyeHole
     wrinkles: dict[str, TrainRow]
+    volumes: dict[str, VolumeRow]

@@ -1,13 +1,19 @@
 """The skin's triangles: base quads subdivided up to twice where expression happens, thinned out where it does not.
 
+Quads that rings of lips or lids pass through are at most halved, so that rings stay rings.
+
 Every vertex is a vertex of the twice subdivided mesh, so that positions, shapes and attributes of any
 identity follow from the two Catmull-Clark matrices.
 """
 
 from __future__ import annotations
 
+from collections.abc import Container
+from itertools import pairwise
+
 import numpy as np
 
+from agentface.anatomy.build.splits import ACROSS, WHOLE
 from agentface.anatomy.build.subdivide import catmull_clark, children, mirror_level
 from agentface.conventions import Doubles, Indices
 
@@ -17,8 +23,10 @@ MOST_LEVELS = 2
 class Skin:
     """The skin's topology: ``triangles (T, 3)`` and ``mirror (V,)``, and the matrices that place its vertices."""
 
-    def __init__(self, quads: Indices, levels: Indices, rest: Doubles, mirror: Indices) -> None:
-        """Subdivide quad i of ``quads (Q, 4)`` ``levels[i]`` times.
+    def __init__(
+        self, quads: Indices, levels: Indices, rest: Doubles, mirror: Indices, splits: Indices | None = None
+    ) -> None:
+        """Subdivide quad i of ``quads (Q, 4)`` ``levels[i]`` times, or halve it as ``splits[i]`` says.
 
         ``rest (N, 3)`` is a symmetric head to choose diagonals by; ``mirror (N,)`` pairs its vertices.
         """
@@ -30,7 +38,8 @@ class Skin:
         self.triangles: Indices
         self.mirror: Indices
         self.kept = np.arange(len(self.rest), dtype=np.int32)
-        half = self._half(quads, balanced(quads, levels))
+        splits = np.zeros(len(quads), np.int32) if splits is None else splits
+        half = self._half(quads, balanced(quads, levels), splits)
         self.all_triangles = np.concatenate([half, self.mirror_all[half[:, ::-1]]])
         self._compact()
 
@@ -60,35 +69,43 @@ class Skin:
         self.triangles = inverse.reshape(-1, 3).astype(np.int32)
         self.mirror = np.searchsorted(self.kept, self.mirror_all[self.kept]).astype(np.int32)
 
-    def _half(self, quads: Indices, levels: Indices) -> Indices:
+    def _half(self, quads: Indices, levels: Indices, splits: Indices) -> Indices:
         left = [i for i, quad in enumerate(quads) if self.rest[quad, 0].mean() > 0]
-        leaves: list[tuple[int, list[int]]] = []
+        leaves: list[list[int]] = []
         for i in left:
             if levels[i] == 0:
-                leaves.append((0, quads[i].tolist()))
+                leaves += self._halves(quads[i].tolist(), int(splits[i]))
             for child in children(i) if levels[i] else ():
                 if levels[i] == 1:
-                    leaves.append((1, self.first.quads[child].tolist()))
+                    leaves.append(self.first.quads[child].tolist())
                 else:
-                    leaves += [(2, self.second.quads[grandchild].tolist()) for grandchild in children(child)]
+                    leaves += [self.second.quads[grandchild].tolist() for grandchild in children(child)]
         # the other half's corners count too: it is this half's mirror image, so along the midline they coincide
-        used = {corner for _, corners in leaves for corner in corners}
+        used = {corner for corners in leaves for corner in corners}
         triangles: list[list[int]] = []
-        for level, corners in leaves:
-            triangles += self._triangulate(self._with_middles(level, corners, used))
+        for corners in leaves:
+            triangles += self._triangulate(self.with_middles([*corners, corners[0]], used)[:-1])
         return np.array(triangles, np.int32)
 
-    def _with_middles(self, level: int, corners: list[int], used: set[int]) -> list[int]:
-        polygon: list[int] = []
-        table: dict[tuple[int, int], int] = {}
-        if level < MOST_LEVELS:
-            table = (self.first, self.second)[level].edge_vertex
-        for a, b in zip(corners, corners[1:] + corners[:1], strict=True):
-            polygon.append(a)
-            middle = table.get((min(a, b), max(a, b)))
-            if middle is not None and middle in used:
-                polygon.append(middle)
-        return polygon
+    def _halves(self, quad: list[int], split: int) -> list[list[int]]:
+        if split == WHOLE:
+            return [quad]
+        a, b, c, d = quad if split == ACROSS else quad[1:] + quad[:1]
+        near, far = self.middle(a, b), self.middle(c, d)
+        return [[a, near, far, d], [near, b, c, far]]
+
+    def middle(self, a: int, b: int) -> int:
+        """The vertex in the middle of the edge from ``a`` to ``b`` of one of the quads or of their quarters; else -1."""
+        ends = (min(a, b), max(a, b))
+        return self.first.edge_vertex.get(ends, self.second.edge_vertex.get(ends, -1))
+
+    def with_middles(self, path: list[int], used: Container[int]) -> list[int]:
+        """A path of vertices with those that are ``used`` on its edges between them."""
+        result = path[:1]
+        for a, b in pairwise(path):
+            middle = self.middle(a, b)
+            result += self.with_middles([a, middle, b], used)[1:] if middle in used else [b]
+        return result
 
     def _triangulate(self, polygon: list[int]) -> list[list[int]]:
         """Cut the ear with the largest smallest angle until a triangle is left."""

@@ -20,6 +20,10 @@ from agentface.deform.eyelids import (
     LOOKING_UP,
     SHRINK,
     SHRINK_HIGHER,
+    SLANT,
+    TIGHT_ACROSS,
+    TIGHT_UP,
+    TIGHTEN,
     UP,
     WIDEN,
     EyelidsTables,
@@ -48,7 +52,9 @@ def apply(tables: EyelidsTables, values: Floats, points: Floats) -> None:
         if pitch > _ZERO:
             pitch *= _ONE - LOOKING_UP * o
         way = s * (_TWO - s)
-        levels = c, min(_ONE, _TWO * s), (_ONE - c) * o, (_ONE - c) * pitch, way * _F(1 - 2 * side), way
+        alone = max(values[tables.inner_brow[side]] - values[tables.outer_brow[side]], _ZERO)
+        turns = (_ONE - c) * o, (_ONE - c) * pitch, (_ONE - c) * values[tables.tightening[side]], (_ONE - c) * alone
+        levels = c, min(_ONE, _TWO * s), *turns, way, _F(1 - 2 * side)
         _move(tables.vertex[side], tables.rest[side], tables.centre[side], tables.fields, levels, points)
 
 
@@ -56,7 +62,7 @@ def apply(tables: EyelidsTables, values: Floats, points: Floats) -> None:
 def _move(
     vertex: Indices, rest: Floats, centre: Floats, fields: Floats, levels: tuple[np.float32, ...], points: Floats
 ) -> None:
-    c, raised, o, pitch, across, up = levels
+    c, raised, o, pitch, tight, alone, way, side = levels
     cx, cy, cz = splat(centre[0]), splat(centre[1]), splat(centre[2])
     lanes = np.empty((3, LANES), dtype=np.float32)
     for block in range(vertex.shape[0]):
@@ -66,11 +72,14 @@ def _move(
         first, home = block * FIELDS * LANES, block * 3 * LANES
         kept = _ONE - load(fields, first + HOLD * LANES)
         hx, hy, hz = load(rest, home), load(rest, home + LANES), load(rest, home + 2 * LANES)
-        x = hx + kept * (load(lanes, 0) - hx) + load(fields, first + ACROSS * LANES) * across
-        y = hy + kept * (load(lanes, LANES) - hy) + load(fields, first + UP * LANES) * up
+        across = load(fields, first + ACROSS * LANES) * way + load(fields, first + TIGHT_ACROSS * LANES) * tight
+        up = load(fields, first + UP * LANES) * way + load(fields, first + TIGHT_UP * LANES) * tight
+        x = hx + kept * (load(lanes, 0) - hx) + across * side
+        y = hy + kept * (load(lanes, LANES) - hy) + up
         z = hz + kept * (load(lanes, 2 * LANES) - hz)
         angle = load(fields, first + CLOSE * LANES) * c + load(fields, first + HIGHER * LANES) * raised
         angle = angle + load(fields, first + WIDEN * LANES) * o + load(fields, first + FOLLOW * LANES) * pitch
+        angle = angle + load(fields, first + TIGHTEN * LANES) * tight + load(fields, first + SLANT * LANES) * alone
         scale = load(fields, first + SHRINK * LANES) * c + load(fields, first + SHRINK_HIGHER * LANES) * raised + _ONE
         q = angle * angle
         cosine = scale * (_ONE + q * (_C1 + q * (_C2 + q * (_C3 + q * (_C4 + q * _C5))))) - _ONE

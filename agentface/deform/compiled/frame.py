@@ -24,6 +24,7 @@ from agentface.deform.compiled import (
     normals,
     shading,
     squash,
+    volumes,
     wrinkles,
 )
 from agentface.deform.frame import PartTables
@@ -102,6 +103,7 @@ def _compile(sources: str) -> Callable[..., None]:
             limits.apply(tables.limits, points)
             lips.contract(tables.lips, values, points)
             eyelids.apply(tables.eyelids, values, points)
+            volumes.apply(tables.volumes, values, points)
             jaw.apply(tables.jaw, values, points)
             lips.surface(tables.lips, points)
             contact.apply(tables.contact, values, points)

@@ -34,6 +34,8 @@ def apply(tables: JawTables, values: Floats, points: Floats) -> None:
             _ONE
             + s3 * square * (_ONE + s5 * square * (_ONE + s7 * square * (_ONE + s9 * square * (_ONE + s11 * square))))
         )
+        points[point, 0] += values[tables.parameter] * tables.drawn[entry, 0]
+        points[point, 2] += values[tables.parameter] * tables.drawn[entry, 1]
         up, forward = points[point, 1] - y, points[point, 2] - z
         points[point, 1] = y + cosine * up - sine * forward
         points[point, 2] = z + sine * up + cosine * forward

@@ -1,0 +1,31 @@
+// How much light gets into the mouth, from the opening between the lips of this frame.
+uniform float mouth_light;   // how much light the lips let in
+uniform vec2 mouth_bow;       // how far behind the middle the corners are, and how much higher, metres
+uniform vec4 mouth_opening;  // heights of the upper and the lower lip's edge, half the width, z; in the head's axes, metres
+
+// How far behind the lips a place is.
+float mouth_depth(vec3 at) {
+    float aside = at.x / mouth_opening.z;
+    return mouth_opening.w - mouth_bow.x * min(aside * aside, 1.6) - at.z;
+}
+
+// At a place in the head's axes: the parts of the surroundings' light and of the key light that arrive.
+vec2 mouth_reach(vec3 at) {
+    float wide = mouth_opening.z, depth = max(mouth_depth(at) - 0.0015, 0.0) + 0.0012;
+    float aside = min(at.x * at.x / (wide * wide), 1.2), middle = 0.5 * (mouth_opening.x + mouth_opening.y) + mouth_bow.y * aside, half_height = max(0.5 * (mouth_opening.x - mouth_opening.y), 0.0002);
+    float high = half_height * max(1.0 - aside * aside, 0.2), y = at.y - middle;
+    // of a slit one sees the difference of the sines of the angles to its edges
+    vec4 edges = vec4(high - y, high + y, wide - at.x, wide + at.x), sines = edges * inversesqrt(edges * edges + depth * depth);
+    float sky = 0.25 * max(sines.x + sines.y, 0.0) * max(sines.z + sines.w, 0.0);
+    vec3 l = transpose(mat3(head)) * light_direction[0].xyz;
+    vec2 hit = at.xy + depth / max(l.z, 0.3) * l.xy;
+    float room = min(high - abs(hit.y - middle), wide - abs(hit.x)), soft = 0.0015 + 0.12 * depth;
+    return vec2(sky, smoothstep(-soft, soft, room) * clamp(high / 0.003, 0.0, 1.0));
+}
+
+// How much of the surroundings' light arrives; inside the mouth as the lips let in.
+float sky_light(float ambient, float lip, float mouth, float wet, vec3 at) {
+    float light = max(max(ambient, mix(0.40, 0.80, mouth_light) * lip), 0.45 * wet);
+    float inside = mouth_reach(at).x * (0.04 + exp(-max(mouth_depth(at) - 0.010, 0.0) / 0.013));
+    return mix(light, inside, mouth);
+}
