@@ -1,7 +1,6 @@
 #version 330 core
 #include "frame.glsl"
 #include "shading.glsl"
-#include "noise.glsl"
 #include "complexion.glsl"
 #include "develop.glsl"
 #ifdef WRINKLED
@@ -16,6 +15,13 @@ centroid in vec4 matter;
 centroid in float soft_key;
 out vec4 colour;
 
+uniform sampler3D pores;   // slopes of the skin's microrelief, its height
+
+const float FINENESS = 97.0;                // volumes a metre
+const vec3 LINED = vec3(1.7, 0.3, 1.0);     // lips have lines that run up and down
+const float THROUGH = 0.4;   // how much of the relief the light in the skin shows
+const float RELIEF = 0.32, LIP_RELIEF = 0.40;
+
 void main() {
     vec3 view = normalize(towards), n = normalize(normal), key = light_direction[0].xyz, light = around, body = key_body;
     float lip = matter.x, moist = matter.y, rough = matter.z, soft = soft_key;
@@ -26,17 +32,19 @@ void main() {
     body *= 1.0 - 0.8 * CREASE_SHADE * raised.w;
     n = raised.xyz;
 #endif
-    vec4 fine = noise(rest_position * 83.0);
-    float grain = fine.g - 0.5;
-    vec3 bump = normalize(n + (1.0 - moist) * mix(0.15, 0.30, lip) * (fine.bar - 0.5)), h = normalize(key + view);
-    float facing = dot(bump, key), n_l = max(facing, 0.0), n_v = max(dot(bump, view), 0.02), n_h = max(dot(bump, h), 0.0);
+    vec4 fine = texture(pores, rest_position * FINENESS * mix(vec3(1.0), LINED, lip));
+    vec3 slope = mat3(head) * (2.0 * fine.xyz - 1.0);
+    float seen = clamp(0.0018 * eye_point.w * inversesqrt(dot(towards, towards)) - 0.9, 0.3, 1.2);   // relief below a pixel would flicker
+    vec3 bump = normalize(n - (1.0 - moist) * seen * mix(RELIEF, LIP_RELIEF, lip) * (slope - n * dot(slope, n))), h = normalize(key + view);
+    float facing = dot(mix(n, bump, THROUGH), key), n_l = max(dot(bump, key), 0.0), n_v = max(dot(bump, view), 0.02), n_h = max(dot(bump, h), 0.0);
     vec3 wrap = WRAP * (1.0 - 0.6 * moist);
     light += body * wrapped(mix(vec3(facing), vec3(soft), SCATTERED), wrap);
 #ifdef TEXTURED
     light = painted(light);
 #endif
 
-    float lobes = mix(ggx(n_h, rough), ggx(n_h, 0.7 * rough), 0.2) * visibility(n_l, n_v, 0.8 * rough);
+    float lobes = mix(ggx(n_h, rough), ggx(n_h, 0.6 * rough), 0.25) * visibility(n_l, n_v, 0.8 * rough);
     float gloss = PI * n_l * lobes * fresnel(mix(F0.x, F0.y, max(lip, moist)), max(dot(view, h), 0.0));
-    colour = vec4(finish(light * (1.0 + mix(0.16, 0.45, lip) * grain) + light_colour[0].rgb * (gloss * matter.w * (0.85 + 0.8 * (fine.b - 0.5)))), 1.0);
+    float pit = fine.w - 0.7;
+    colour = vec4(finish(light * (1.0 + mix(0.14, 0.30, lip) * pit) + light_colour[0].rgb * (gloss * matter.w * (1.0 + 0.9 * pit))), 1.0);
 }

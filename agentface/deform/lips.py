@@ -15,12 +15,16 @@ from agentface.anatomy.model import HeadModel
 from agentface.conventions import Doubles, Floats, Indices
 from agentface.deform.lip_grid import SEAM_RING, lip_grid
 from agentface.deform.lip_skirt import skirt as lip_skirt
-from agentface.deform.lip_surface import COLUMNS, control_places, fit, grid_places, moved_with, weights
+from agentface.deform.lip_surface import COLUMNS, ROWS, control_places, fit, grid_places, moved_with, weights
 from agentface.deform.orbicularis_oris import contractions
 from agentface.parameters import indices_of
 
 _BLEND = (0.34, 0.67, 1.0)  # from the innermost ring of the patch
 _OUTER_BLEND = (0.12, 0.5, 0.88)  # from its outermost ring
+RED = 2, 3
+"""Rows of control points whose middle is the middle of the red."""
+THINNED = tuple(np.float32(share) for share in (0.2, 0.7, 1.0, 1.0, 0.7, 0.15))
+"""How much of a stretch each row pays with its distance from there: lips keep their volume."""
 
 
 class LipTables(NamedTuple):
@@ -40,6 +44,7 @@ class LipTables(NamedTuple):
         skirt, skirt_index, skirt_weight: ``(F,)``, ``(F, 4)``, ``(F, 4)``: vertices beyond the patch that follow the
             movement of its edge under orbicularis oris, the control points of the edge, and weights with the fade.
         parameters: ``(2,)``, where pucker and press stand in a pose.
+        width: m, of the mouth at rest, from corner to corner in the middle of the red.
         roll_from: 0..1, the press above which the lips also roll in.
         shift: ``(3, 144, 3)`` m: rotation and extrusion of pucker, press and roll at full contraction.
         target: ``(3, 144, 2)`` m: the place (x, y) of each control point on the ellipse.
@@ -62,6 +67,7 @@ class LipTables(NamedTuple):
     skirt_index: Indices
     skirt_weight: Floats
     parameters: Indices
+    width: float
     roll_from: float
     shift: Floats
     target: Floats
@@ -104,6 +110,7 @@ def prepare(model: HeadModel) -> LipTables:
         parameters=np.array(
             [indices_of(name)[0] for name in ("orbicularis_oris_pucker", "orbicularis_oris_press")], np.int32
         ),
+        width=float(_width(control)),
         roll_from=model.lips.orbicularis_oris.roll_from,
         shift=_stack([field.shift for field in fields]),
         target=_stack([field.target for field in fields]),
@@ -114,20 +121,29 @@ def prepare(model: HeadModel) -> LipTables:
 def contract(tables: LipTables, values: Floats, points: Floats) -> None:
     """Orbicularis oris: p' = p + o (shift + pull (E(p) - p)) on the control points, E(p) the place on the ellipse.
 
-    ``shift`` is rotation and extrusion (Bui et al., section 3.2, misprint corrected: a sum of displacements). The
-    vertices at the patch's edge and beyond follow the surface there. ``points (V + 144, 3)`` m are moved in place.
+    ``shift`` is rotation and extrusion (Bui et al., section 3.2, misprint corrected: a sum of displacements). Before
+    that, lips that the vector muscles have stretched are thinner. The vertices at the patch's edge and beyond follow
+    the surface there. ``points (V + 144, 3)`` m are moved in place.
     """
     levels = contraction_levels(tables, values)
-    if not levels.any():
-        return
     control = points[tables.skin_count :]
-    moved = np.zeros_like(control)
+    thinner = thinning(_width(control), tables.width)
+    if not levels.any() and thinner == 0.0:
+        return
+    rows = control.reshape(COLUMNS, ROWS, 3)
+    away = rows - rows[:, RED].mean(axis=1, keepdims=True, dtype=np.float32)
+    moved = (-thinner * np.array(THINNED)[:, None] * away * np.array([0, 1, 1], np.float32)).reshape(-1, 3)
     for level, shift, target, pull in zip(levels, tables.shift, tables.target, tables.pull, strict=True):
         moved += level * shift
         moved[:, :2] += level * pull[:, None] * (target - control[:, :2])
     points[tables.patch[tables.rim]] += _mixed(moved, tables.controls[tables.rim], tables.weight[tables.rim])
     points[tables.skirt] += _mixed(moved, tables.skirt_index, tables.skirt_weight)
     control += moved
+
+
+def thinning(width: np.float32, rest: float) -> np.float32:
+    """The part of their height and depth that lips lose whose mouth is ``width`` m wide and ``rest`` m at rest."""
+    return np.float32(max(0.0, 1.0 - rest / max(width, rest)))
 
 
 def contraction_levels(tables: LipTables, values: Floats) -> Floats:
@@ -142,6 +158,11 @@ def surface(tables: LipTables, points: Floats) -> None:
     moved = points[tables.skin_count :] - tables.control_rest
     there = tables.rest + _mixed(moved, tables.controls, tables.weight)
     points[tables.patch] += tables.blend[:, None] * (there - points[tables.patch])
+
+
+def _width(control: Floats | Doubles) -> np.float32:
+    left, right = (control[ROWS * column + RED[0], 0] for column in (0, COLUMNS // 2))
+    return np.float32(left - right)
 
 
 def _mixed(moved: Floats, index: Indices, weight: Floats) -> Floats:

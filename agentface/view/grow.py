@@ -52,7 +52,7 @@ def grow(model: HeadModel, normals: Floats, look: HairLook, quality: str, rng: n
     # the guides are the same for every quality, so that they show the same hair
     starts = HairRoots.drawn(model, normals, line, _GUIDES, np.random.default_rng(_GUIDE_SEED))
     thickness = style.thickness * look.volume * line.unit / REFERENCE_EYES
-    guides = _guides(starts, flow_of(model, look), hull, style, thickness)
+    guides = guides_from(starts, flow_of(model, look), hull, style, thickness)
     locks = _Locks(starts, guides, lengths_of(model, look, guides), hull, style, thickness, parting_of(model, look))
     roots = HairRoots.drawn(model, normals, line, amount.locks, rng, behind=_LOCKS_BEHIND)
     growth = locks.grown(roots, amount, look, rng)
@@ -63,7 +63,7 @@ def grow(model: HeadModel, normals: Floats, look: HairLook, quality: str, rng: n
     return growth.strands(model)
 
 
-def _guides(starts: HairRoots, flow: Flow, hull: Hull, style: Style, thickness: float) -> Doubles:
+def guides_from(starts: HairRoots, flow: Flow, hull: Hull, style: Style, thickness: float) -> Doubles:
     """``(G, K, 3)``: a point every ``GUIDE_STEP`` metres."""
     at = starts.places
     heading = unit_rows(0.7 * starts.normals + flow(at, 0.0))
@@ -74,7 +74,7 @@ def _guides(starts: HairRoots, flow: Flow, hull: Hull, style: Style, thickness: 
         reached = hull.hold(at + GUIDE_STEP * heading, 0.35 * thickness * min(1.0, k / 4), 0.004)
         heading, at = unit_rows(reached - at), reached
         line.append(at)
-    return _smoothed(np.stack(line, axis=1), 4)
+    return smoothed(np.stack(line, axis=1), 4)
 
 
 class _Locks:
@@ -109,12 +109,12 @@ class _Locks:
         if single:  # those of the hairline soon join the locks
             along *= np.where(stray == 0, np.minimum(1.0, _JOIN / along[:, -1]), 1.0)[:, None]
         closing = self.style.clump * (0.5 + lock)[:, None] * np.clip((t - 0.15) / 0.85, 0, 1) ** 1.3
-        points = self._followed(mine, along)
+        points = followed(self.guides, mine, along)
         points = points + (roots.places - self.starts.places[mine])[:, None] * (1 - closing)[..., None]
         points = points + _wander(count, t, rng, np.minimum(0.0010, 0.02 * along[:, -1]) * (1 + 2 * stray))
         points = self._layered(roots, points, along, layer)
         if look.curl:
-            points = points + (0.006 * look.curl) * self._waves(points, along, lock)
+            points = points + (0.006 * look.curl) * waves(self.hull, points, along, lock)
             points[:, 1:] = self.hull.push_out(points[:, 1:], 0.0010)
         fine = np.clip(roots.depth / 0.012, 0.30, 1.0)
         opacity = 0.95 * np.clip(roots.depth / 0.010, 0.30, 1.0)
@@ -131,13 +131,6 @@ class _Locks:
         across = (places[:, None, 0] > self.parting) != (guides[None, :, 0] > self.parting)
         return np.asarray((apart + across).argmin(1))
 
-    def _followed(self, mine: np.typing.NDArray[np.intp], along: Doubles) -> Doubles:
-        """``(N, P, 3)``: the points ``along`` metres down the guides."""
-        at = np.clip(along / GUIDE_STEP, 0, _GUIDE_POINTS - 1.001)
-        low = at.astype(int)
-        part = (at - low)[..., None]
-        return np.asarray((1 - part) * self.guides[mine[:, None], low] + part * self.guides[mine[:, None], low + 1])
-
     def _layered(self, roots: HairRoots, points: Doubles, along: Doubles, layer: Doubles) -> Doubles:
         """Each strand at its own height in the hair, from its root on the skin."""
         # short hair cannot stand as high as long hair
@@ -147,21 +140,30 @@ class _Locks:
         height = 0.0008 + most[:, None] * (0.12 + 0.88 * layer[:, None] ** 0.35) * lifted
         points = self.hull.hold(points, height, 0.0015)
         points[:, 0] = roots.places
-        points = _smoothed(points, 4)
+        points = smoothed(points, 4)
         points[:, 1:] = self.hull.push_out(points[:, 1:], 0.6 * height[:, 1:])
         return points
 
-    def _waves(self, points: Doubles, along: Doubles, lock: Doubles) -> Doubles:
-        out = self.hull.outward(points)
-        across = unit_rows(np.cross(np.gradient(points, axis=1), out))
-        # neighbouring locks wave together
-        phase = 60.0 * points[:, 0, 0] + 45.0 * points[:, 0, 2] + 0.5 * lock
-        turn = 2 * np.pi * along / _WAVE + phase[:, None]
-        grown = np.clip(along / _WAVE, 0, 1)[..., None]
-        return np.asarray(grown * (across * np.sin(turn)[..., None] + 0.25 * out * np.cos(turn)[..., None]))
+
+def followed(guides: Doubles, mine: np.typing.NDArray[np.intp], along: Doubles) -> Doubles:
+    """``(N, P, 3)``: the points ``along (N, P)`` metres down the guides ``mine (N,)`` of ``guides (G, K, 3)``."""
+    at = np.clip(along / GUIDE_STEP, 0, _GUIDE_POINTS - 1.001)
+    low = at.astype(int)
+    part = (at - low)[..., None]
+    return np.asarray((1 - part) * guides[mine[:, None], low] + part * guides[mine[:, None], low + 1])
 
 
-def _smoothed(lines: Doubles, times: int) -> Doubles:
+def waves(hull: Hull, points: Doubles, along: Doubles, lock: Doubles) -> Doubles:
+    """``(N, P, 3)``: how wavy hair goes to and fro, in heights of the waves; neighbouring locks wave together."""
+    out = hull.outward(points)
+    across = unit_rows(np.cross(np.gradient(points, axis=1), out))
+    phase = 60.0 * points[:, 0, 0] + 45.0 * points[:, 0, 2] + 0.5 * lock
+    turn = 2 * np.pi * along / _WAVE + phase[:, None]
+    grown = np.clip(along / _WAVE, 0, 1)[..., None]
+    return np.asarray(grown * (across * np.sin(turn)[..., None] + 0.25 * out * np.cos(turn)[..., None]))
+
+
+def smoothed(lines: Doubles, times: int) -> Doubles:
     """``(N, P, 3)`` with every inner point drawn to its neighbours."""
     for _ in range(times):
         lines = lines.copy()

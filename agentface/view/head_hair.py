@@ -13,6 +13,8 @@ from agentface.view.cap import Cap, scalp_cap
 from agentface.view.grow import grow
 from agentface.view.hair import Hairline
 from agentface.view.look import HairLook
+from agentface.view.programs import Programs
+from agentface.view.sheets import SheetArray, sheets
 from agentface.view.strands import StrandArray
 
 _SEED = 20
@@ -22,9 +24,10 @@ _GLOSS = {"cropped": 0.25, "swept": 0.8, "bob": 0.9, "bun": 0.9}
 
 
 class HeadHair:
-    """Hair of any style but ``none``; ``cap`` and ``strand`` are programs that know the frame."""
+    """Hair of any style but ``none``."""
 
-    def __init__(self, context: Any, cap: Any, strand: Any, model: HeadModel, look: HairLook) -> None:
+    def __init__(self, context: Any, programs: Programs, model: HeadModel, look: HairLook) -> None:
+        cap, strand, sheet = (programs[name] for name in ("cap", "strand", "sheet"))
         self._context, self._program, self._model, self._look = context, strand, model, look
         mesh = scalp_cap(model, Hairline(model, look.hairline), look)
         self._cap = Cap(context, cap, mesh, model.vertices)
@@ -33,13 +36,21 @@ class HeadHair:
         cap["coils"].value = float(look.style == "cropped")
         self._centre = np.array([0.0, 0.4 * model.landmarks.eye_separation, -0.012])
         strand["hair_centre"].value = tuple(self._centre)
-        strand["gloss"].value = _GLOSS[look.style]
+        self._sheets: SheetArray | None = None
+        if look.style == "bob":
+            self._sheets = SheetArray(
+                context, sheet, sheets(model, look, np.random.default_rng(_SEED)), self._centre[1]
+            )
+            sheet["hair_colour"].value = tuple(look.colour)
+        programs.set({"gloss": _GLOSS[look.style]})
 
     def draw_solid(self, quality: str, camera: Camera, head: Floats) -> None:
         """Draw what hides what is behind it, seen by ``camera`` with the head turned by ``head (4, 4)``."""
         eye: Doubles = np.linalg.solve(head.astype(np.float64), np.array([*camera.eye, 1.0]))[:3]
         self._program["narrowest"].value = _NARROWEST[quality]
         self._program["streaks"].value = _STREAKS[quality]
+        if self._sheets is not None:
+            self._sheets.draw()
         self._strands_for(quality).draw_solid(eye)
         self._context.enable(self._context.CULL_FACE)
         self._cap.draw_solid()

@@ -9,13 +9,22 @@ from agentface.view.look import Look
 from agentface.view.tiers import TIERS
 
 FRAME_BINDING = 0
-_SLOTS = {"skin_fields": 0, "picture": 0, "noise_volume": 1, "key_depth": 2, "wrinkle_atlas": 3, "skin_picture": 4}
+_SLOTS = {
+    "skin_fields": 0,
+    "picture": 0,
+    "noise_volume": 1,
+    "key_depth": 2,
+    "wrinkle_atlas": 3,
+    "skin_picture": 4,
+    "pores": 5,
+}
 _SHADERS = {
     "part": ("part", "part"),
     "cloth": ("cloth", "cloth"),
     "eye": ("eye", "eye"),
     "ribbon": ("ribbon", "ribbon"),
     "strand": ("strand", "strand"),
+    "sheet": ("sheet", "sheet"),
     "lining": ("anchored", "part"),
     "cap": ("cap", "cap"),
     "background": ("screen", "background"),

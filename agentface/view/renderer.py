@@ -9,6 +9,7 @@ import numpy as np
 from agentface.anatomy.model import HeadModel
 from agentface.conventions import SIDES, Bytes, Floats
 from agentface.deform.geometry import FaceGeometry
+from agentface.view import pores
 from agentface.view.anchored import AnchoredArray, eye_linings
 from agentface.view.brows import BrowLine, brow_hairs, lash_hairs
 from agentface.view.camera import Camera, named_view
@@ -63,6 +64,7 @@ class Renderer:
         self._frame = self.context.buffer(reserve=_FRAME_BYTES)
         rng = np.random.default_rng(_SEED)
         self._noise = self.context.texture3d((SIDE,) * 3, 4, noise_volume(rng).tobytes())
+        self._pores = self.context.texture3d((pores.SIDE,) * 3, 4, pores.pore_volume(rng).tobytes())
         self._picture = skin_texture(self.context, self.look)
         self._programs = Programs(self.context, textured=self._picture is not None)
         self._screens = {name: self.context.vertex_array(self._programs[name], []) for name in ("background", "copy")}
@@ -86,7 +88,7 @@ class Renderer:
         ]
         self._head_hair: HeadHair | None = None
         if hair.style != "none":
-            self._head_hair = HeadHair(self.context, self._programs["cap"], self._programs["strand"], model, hair)
+            self._head_hair = HeadHair(self.context, self._programs, model, hair)
         front = float(model.landmarks["upper_lip_middle"][2])
         self._programs.wear(self.look)
         self._programs.set({"mouth_front": front, "atlas_height": self._wrinkles.height, "iris_radius": _IRIS_RADIUS})
@@ -140,6 +142,7 @@ class Renderer:
         self.upload_skin(geometry)
         self._fields.texture.use(0)
         self._noise.use(1)
+        self._pores.use(5)
         self._wrinkles.texture.use(3)
         if self._picture is not None:
             self._picture.use(4)

@@ -62,7 +62,7 @@ STYLES = {
     ),
     "bob": Style(
         0.012, 0.040, 0.72, 0.16, 0.32, 0.94, True,
-        {"fast": Amount(345, 0.0043, 110, 0.0007, 8), "portrait": Amount(700, 0.0027, 480, 0.00038, 10)},
+        {"fast": Amount(0, 0.0043, 80, 0.0007, 6), "portrait": Amount(0, 0.0027, 260, 0.00030, 8)},
     ),
     "bun": Style(
         0.007, 0.060, 0.55, 0.0, 0.35, 0.84, False,
@@ -74,6 +74,11 @@ STYLES = {
 def parting_of(model: HeadModel, look: HairLook) -> float:
     """The parting's x in metres."""
     return look.parting * 0.6 * model.landmarks.eye_separation
+
+
+def whorl_of(model: HeadModel, look: HairLook) -> Doubles:
+    """Where the parting ends: a point above which hair falls to all sides; its height means nothing."""
+    return np.array([0.5 * parting_of(model, look), 0.0, -0.75 * model.landmarks.eye_separation])
 
 
 def knot_of(model: HeadModel) -> Doubles:
@@ -108,7 +113,7 @@ def _falling(model: HeadModel, look: HairLook) -> Flow:
     """Away from the parting and round the whorl, then down beside the cheeks."""
     parting, unit = parting_of(model, look), model.landmarks.eye_separation
     front = float(model.landmarks["hairline_middle"][2])
-    whorl = np.array([0.5 * parting, 0.0, -0.75 * unit])
+    whorl = whorl_of(model, look)
 
     def flow(at: Doubles, along: float) -> Doubles:
         side = np.tanh((at[:, 0] - parting) / (0.05 * unit))

@@ -8,11 +8,14 @@ import numpy as np
 from numba import njit
 
 from agentface.conventions import Floats, Indices
+from agentface.deform import lips
 from agentface.deform.lip_surface import COLUMNS, ROWS
-from agentface.deform.lips import LipTables
+from agentface.deform.lips import RED, THINNED, LipTables
 
 _CONTROLS = COLUMNS * ROWS
-_ZERO = np.float32(0.0)
+_ZERO, _HALF = np.float32(0.0), np.float32(0.5)
+_THINNED = np.array(THINNED)
+_thinning = njit(cache=True, nogil=True, error_model="numpy")(lips.thinning)
 
 
 @njit(cache=True, nogil=True, error_model="numpy", inline="always")
@@ -34,13 +37,17 @@ def _mean(controls: Indices, weights: Floats, row: int, count: int, moved: Float
 def contract(tables: LipTables, values: Floats, points: Floats) -> None:
     """Orbicularis oris moves the control points and the skin at the patch's edge; as its twin."""
     pucker, press = values[tables.parameters[0]], values[tables.parameters[1]]
-    if pucker == _ZERO and press == _ZERO:
+    start = tables.skin_count
+    left, right = points[start + RED[0], 0], points[start + ROWS * (COLUMNS // 2) + RED[0], 0]
+    thinner = _thinning(left - right, tables.width)
+    if pucker == _ZERO and press == _ZERO and thinner == _ZERO:
         return
     beyond = max(0.0, (press - tables.roll_from) / (1.0 - tables.roll_from))
     roll = np.float32(beyond * beyond)
-    start = tables.skin_count
     moved = np.empty((_CONTROLS, 3), np.float32)
     for i in range(_CONTROLS):
+        row = i % ROWS
+        red, other, share = start + i - row + RED[0], start + i - row + RED[1], thinner * _THINNED[row]
         x, y = points[start + i, 0], points[start + i, 1]
         across = pucker * (tables.shift[0, i, 0] + tables.pull[0, i] * (tables.target[0, i, 0] - x))
         across += press * (tables.shift[1, i, 0] + tables.pull[1, i] * (tables.target[1, i, 0] - x))
@@ -49,6 +56,8 @@ def contract(tables: LipTables, values: Floats, points: Floats) -> None:
         up += press * (tables.shift[1, i, 1] + tables.pull[1, i] * (tables.target[1, i, 1] - y))
         up += roll * (tables.shift[2, i, 1] + tables.pull[2, i] * (tables.target[2, i, 1] - y))
         ahead = pucker * tables.shift[0, i, 2] + press * tables.shift[1, i, 2] + roll * tables.shift[2, i, 2]
+        up -= share * (y - _HALF * (points[red, 1] + points[other, 1]))
+        ahead -= share * (points[start + i, 2] - _HALF * (points[red, 2] + points[other, 2]))
         moved[i, 0], moved[i, 1], moved[i, 2] = across, up, ahead
     for k in range(tables.rim.shape[0]):
         row = tables.rim[k]

@@ -1,0 +1,165 @@
+"""Long hair as sheets: smooth surfaces that run from the parting over the head, with strands, locks and tips by pixel."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from agentface.anatomy.model import HeadModel
+from agentface.conventions import SIDES, Doubles, Floats, Indices
+from agentface.smoothstep import smoothstep
+from agentface.view.grow import smoothed, waves
+from agentface.view.hair import Hairline
+from agentface.view.hull import Hull
+from agentface.view.look import HairLook
+from agentface.view.ribbons import unit_rows
+from agentface.view.styles import REFERENCE_EYES, STYLES, parting_of, whorl_of
+
+_COLUMNS, _ROWS = 64, 16
+_INNER_FROM, _INNER_ROWS = 0.4, 8
+"""The inner sheet is seen between tips only."""
+_LAYERS = (1.0, 0.6)
+"""Where between the skin and the outside of the hair the sheets lie."""
+_ON_PARTING = 0.45
+"""The part of the columns that start along the parting; the others fan out round the whorl."""
+_TURNS_DEG = (60.0, 186.0)
+"""Round the head from the front, where it is widest: where the first and the last column lie."""
+_ARC, _FALL, _SMOOTHINGS = 24, 12, 60
+_BESIDE = 0.0025
+"""Metres from the parting where hair starts."""
+_LOCKS = 13
+_WIDTHS = 0.3, 1.7
+"""Of the spaces between columns, in locks, as parts of their mean."""
+_RIDGE, _UNEVEN = 0.0016, 0.05
+_TUCKED = 0.3
+"""How high the front edge lies, as a part of the hair's thickness."""
+"""Metres that a lock rises over the gaps beside it; the part by which the lengths of locks differ."""
+
+
+@dataclass(frozen=True, slots=True)
+class Sheet:
+    """A grid of columns of hair round the head's ``centre (3,)`` m: ``points (C, R, 3)`` m, and its ``places (C, R, 4)``:
+    across in locks, along 0..1, light that the hair above lets through, and a number of its own."""
+
+    points: Floats
+    places: Floats
+    centre: Doubles
+
+    def mesh(self) -> tuple[Floats, Indices]:
+        """Rows of position, tangent along the hair, normal and place ``(C R, 13)``, and triangles."""
+        along = unit_rows(np.gradient(self.points.astype(np.float64), axis=1))
+        across = np.gradient(self.points.astype(np.float64), axis=0)
+        normal = unit_rows(np.cross(across, along))
+        normal *= np.sign((normal * (self.points - self.centre)).sum(2, keepdims=True))
+        rows = np.concatenate([self.points, along, normal, self.places], axis=2)
+        columns, count = self.points.shape[:2]
+        i, j = np.meshgrid(np.arange(columns - 1), np.arange(count - 1), indexing="ij")
+        a = (i * count + j).ravel()
+        quads = np.stack([a, a + 1, a + count, a + count, a + 1, a + count + 1], axis=1)
+        rows, triangles = rows.reshape(columns * count, -1).astype(np.float32), quads.reshape(-1, 3).astype(np.int32)
+        outward = rows[triangles[:, 0], 6:9]
+        a, b, c = (rows[triangles[:, corner], :3] for corner in range(3))
+        inside = (np.cross(b - a, c - a) * outward).sum(1) < 0.0
+        triangles[inside] = triangles[inside][:, ::-1]
+        return rows, triangles
+
+
+def sheets(model: HeadModel, look: HairLook, rng: np.random.Generator) -> list[Sheet]:
+    """The sheets of hair that falls from a parting, the outer ones first."""
+    style, hull = STYLES[look.style], Hull(model, ears=True)
+    thickness = style.thickness * look.volume * model.landmarks.eye_separation / REFERENCE_EYES
+    grown = []
+    for side in SIDES:
+        paths = _paths(model, look, hull, 1.0 if side == SIDES[0] else -1.0)
+        grown += [_sheet(hull, look, paths, thickness, layer, rng) for layer in _LAYERS]
+    return [*grown[:: len(_LAYERS)], *grown[1 :: len(_LAYERS)]]
+
+
+def _paths(model: HeadModel, look: HairLook, hull: Hull, sign: float) -> Doubles:
+    """``(C, K, 3)`` m on the hull: from the parting over the head, by the shortest way, to its widest, then down."""
+    roots = _roots(model, look, hull, sign) - hull.centre
+    first = unit_rows(roots)
+    turn = np.radians(np.linspace(*_TURNS_DEG, _COLUMNS))
+    last = np.stack([sign * np.sin(turn), 0.0 * turn, np.cos(turn)], axis=1)
+    angle = np.arccos(np.clip((first * last).sum(1), -1.0, 1.0))[:, None, None]
+    part = np.linspace(0.0, 1.0, _ARC)[None, :, None]
+    arc = (np.sin((1.0 - part) * angle) * first[:, None] + np.sin(part * angle) * last[:, None]) / np.sin(angle)
+    arc = hull.hold(hull.centre + 0.1 * arc, 0.0, 0.0)
+    lowest = look.length * float(model.landmarks["menton"][1])
+    drop = np.linspace(0.0, 1.0, _FALL + 1)[None, 1:, None] * (lowest - arc[:, -1:, 1:2])
+    fall = arc[:, -1:] + drop * [0.0, 1.0, 0.0]
+    path = np.concatenate([arc, hull.hold(fall, 0.0, 0.0)], axis=1)
+    return hull.push_out(smoothed(path, _SMOOTHINGS), 0.0)
+
+
+def _roots(model: HeadModel, look: HairLook, hull: Hull, sign: float) -> Doubles:
+    """``(C, 3)`` m along the parting from the hairline back, then round the whorl to the middle of the back."""
+    line, whorl = Hairline(model, look.hairline), whorl_of(model, look)
+    pitch = np.radians(np.linspace(85.0, -30.0, 400))
+    top = hull.hold(hull.centre + 0.1 * np.stack([0 * pitch, np.cos(pitch), np.sin(pitch)], axis=1), 0.0, 0.0)
+    part = np.clip((top[:, 2] - whorl[2]) / (top[0, 2] - whorl[2]), 0.0, 1.0)
+    top[:, 0] = whorl[0] + (parting_of(model, look) - whorl[0]) * part
+    top = hull.hold(top, 0.0, 0.0)
+    first, last = int(np.argmax(line.behind(top) > 0.001)), int(np.argmax(top[:, 2] < whorl[2]))
+    count = round(_ON_PARTING * _COLUMNS)
+    chosen = top[np.linspace(first, last, count).astype(int)]
+    fan = np.radians(np.linspace(90.0, 190.0, _COLUMNS - count))
+    round_whorl = chosen[-1] + 0.004 * np.stack([sign * np.sin(fan), 0 * fan, np.cos(fan)], axis=1)
+    chosen[:, 0] += sign * _BESIDE
+    return np.concatenate([chosen, round_whorl])
+
+
+def _sheet(
+    hull: Hull, look: HairLook, paths: Doubles, thickness: float, layer: float, rng: np.random.Generator
+) -> Sheet:
+    widths = rng.uniform(*_WIDTHS, _COLUMNS - 1)
+    across = np.concatenate([[0.0], np.cumsum(widths)]) * _LOCKS / widths.sum()
+    t = np.linspace(0.0, 1.0, _ROWS) if layer == 1.0 else np.linspace(_INNER_FROM, 1.0, _INNER_ROWS)
+    uneven = np.interp(across, np.arange(_LOCKS + 1), rng.uniform(0.0, 1.0, _LOCKS + 1))
+    points, along = _resampled(paths, t, (1.0 - _UNEVEN * uneven) * (0.94 + 0.06 * layer))
+    ridge = np.sin(np.pi * (across % 1.0))[:, None] - 0.5
+    tucked = _TUCKED + (1.0 - _TUCKED) * smoothstep(0.0, 1.5, across)[:, None]
+    height = thickness * layer * tucked * (0.12 + 0.88 * smoothstep(0.0, 0.045, along)) + _RIDGE * np.sqrt(t) * ridge
+    points = points + height[..., None] * hull.outward(points)
+    if look.curl:
+        points = points + 0.006 * look.curl * waves(hull, points, along, uneven)
+    light = 0.55 + 0.45 * layer * (0.6 + 0.4 * smoothstep(0.0, 0.02, along))
+    places = np.stack(np.broadcast_arrays(across[:, None], t, light, layer + uneven[:, None]), axis=2)
+    return Sheet(points.astype(np.float32), places.astype(np.float32), hull.centre)
+
+
+def _resampled(paths: Doubles, t: Doubles, share: Doubles) -> tuple[Doubles, Doubles]:
+    """``(C, R, 3)`` m and ``(C, R)`` m: the points at parts ``t`` of each path's length times ``share``; the lengths."""
+    steps = np.linalg.norm(np.diff(paths, axis=1), axis=2)
+    way = np.concatenate([np.zeros((len(paths), 1)), np.cumsum(steps, axis=1)], axis=1)
+    along = way[:, -1:] * share[:, None] * t
+    points = np.empty((*along.shape, 3))
+    for column, (line, known, wanted) in enumerate(zip(paths, way, along, strict=True)):
+        points[column] = np.stack([np.interp(wanted, known, line[:, axis]) for axis in range(3)], axis=1)
+    return points, along
+
+
+class SheetArray:
+    """Sheets on the GPU; they turn with the head."""
+
+    def __init__(self, context: Any, program: Any, grown: list[Sheet], widest: float) -> None:
+        """``widest`` m: hair above this height has the head behind it and is seen from outside only."""
+        self._context = context
+        meshes = [sheet.mesh() for sheet in grown]
+        firsts = np.cumsum([0, *(len(rows) for rows, _ in meshes)])
+        rows = np.concatenate([rows for rows, _ in meshes])
+        triangles = np.concatenate([triangles + first for (_, triangles), first in zip(meshes, firsts, strict=False)])
+        hangs = rows[triangles, 1].min(axis=1) < widest
+        ordered = np.concatenate([triangles[~hangs], triangles[hangs]]).astype(np.int32)
+        layout = [(context.buffer(rows.tobytes()), "3f 3f 3f 4f", "place", "along_rest", "facing", "sheet")]
+        self._array = context.vertex_array(program, layout, context.buffer(ordered.tobytes()))
+        self._lying = 3 * int((~hangs).sum())
+
+    def draw(self) -> None:
+        """Draw them."""
+        self._context.enable(self._context.CULL_FACE)
+        self._array.render(vertices=self._lying)
+        self._context.disable(self._context.CULL_FACE)
+        self._array.render(vertices=self._array.vertices - self._lying, first=self._lying)

@@ -1,0 +1,27 @@
+#version 330 core
+#include "noise.glsl"
+centroid in vec3 dull, bright;
+centroid in vec4 strand;   // across in locks, along 0..1, light, a number of its own
+out vec4 colour;
+
+const float HAIRS = 26.0;      // that are seen in a lock
+const float TIP = 0.16;        // of the length, over which hairs end
+const float EDGE = 6.0;        // hairs a lock's width, over which the sheet's front edge grows dense
+const float APART = 0.45;      // from here on locks narrow towards their tips
+
+float scattered(float number) {
+    return fract(0.618034 * number + 0.37 * floor(strand.w) + 0.11 * fract(0.1415 * number * number));
+}
+
+void main() {
+    float along = strand.y, number = floor(strand.x), lock = 2.0 * (strand.x - number) - 1.0, own = scattered(3.0 * number + 1.0);
+    vec4 drift = noise(vec3(0.23 * strand.x, 0.9 * along, 0.31 * strand.w));
+    float hairs = HAIRS * strand.x + 5.0 * (drift.r - 0.5), low = floor(hairs);
+    float here = scattered(low), between = mix(here, scattered(low + 1.0), smoothstep(0.0, 1.0, hairs - low));
+    float narrow = 1.05 - (0.35 + 0.6 * own) * smoothstep(APART, 1.0, along);
+    float edge = EDGE * strand.x * (1.2 - along) + 0.8 * along;   // fewer hairs frame the face
+    if (here > edge + 0.25 || along > 1.0 - TIP * (0.3 + own) * here * here - 0.04 * own || abs(lock) > narrow + 0.35 * here) discard;
+    float fine = abs(2.0 * fract(2.7 * hairs) - 1.0), gap = 1.0 - (0.15 + 0.4 * own) * smoothstep(0.5, 1.0, abs(lock)) * (0.4 + drift.g);
+    float light = (1.0 + 0.36 * (between - 0.5) + 0.14 * (fine - 0.5) + 0.5 * (drift.b - 0.5)) * gap;
+    colour = vec4(mix(dull, bright, between * gap) * light, 1.0);
+}

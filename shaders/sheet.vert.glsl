@@ -1,0 +1,28 @@
+#version 330 core
+// Long hair as a surface, lit at its points; strands and locks are found by pixel.
+#include "frame.glsl"
+#include "shading.glsl"
+#include "hair.glsl"
+#include "develop.glsl"
+in vec3 place;
+in vec3 along_rest;
+in vec3 facing;
+in vec4 sheet;         // across in locks, along 0..1, light that the hair above lets through, a number of its own
+
+centroid out vec3 dull, bright;  // between and on the highlights
+centroid out vec4 strand;        // as sheet
+
+uniform vec3 hair_colour;
+uniform float gloss;
+
+void main() {
+    vec3 placed = (head * vec4(place, 1.0)).xyz, along = mat3(head) * along_rest, n = mat3(head) * facing;
+    vec3 view = normalize(eye_point.xyz - placed);
+    n = dot(n, view) < 0.0 ? -n : n;
+    vec3 base = hair_colour * mix(1.0, 1.25, smoothstep(0.3, 1.0, sheet.y));
+    HairLight light = hair_lights(base, along, n, view, gloss, 0.10 * (fract(sheet.w * 3.7) - 0.5), sheet.z);
+    dull = finish(light.body + 0.30 * light.shine);
+    bright = finish(light.body + 1.5 * light.shine);
+    strand = sheet;
+    gl_Position = view_projection * vec4(placed, 1.0);
+}
