@@ -48,6 +48,7 @@ class Face:
         seed: of everything random in the motion; the same calls then give the same frames.
         compiled: False for numpy instead of compiled kernels: one picture is there sooner, a frame takes far longer.
         look: the name of a look of this face, or the path of its file; the face's own when None.
+        asymmetry: how much of its own asymmetry the face has, 0..1; a model that is loaded has its own.
         clock: measures ``frame_ms``; the motion itself takes its time from ``step`` alone.
 
     A call changes where the face goes, ``step`` moves it there. Times are seconds; a fade of 0 is done at once.
@@ -68,16 +69,17 @@ class Face:
         clock: Clock | None = None,
         compiled: bool = True,
         look: str | Path | None = None,
+        asymmetry: float = 1.0,
     ) -> None:
         check_deformer(deformer)
-        self.model = face if isinstance(face, HeadModel) else load_model(face)
+        self.model = face if isinstance(face, HeadModel) else load_model(face, asymmetry=asymmetry)
         self.random = np.random.default_rng(seed)
         self.traffic = Traffic()
         self.inputs: list[Callable[[], None]] = []
         """Called at the start of every step: where servers hand over what came in."""
         self._clock = clock or SystemClock()
         self._inference = default_inference(compiled=compiled)
-        self._mixer = Mixer(self._inference)
+        self._mixer = Mixer(self._inference, self.model.gains)
         self._deformer = _deformer(self.model, compiled=compiled)
         self._renderer: Renderer | None = None
         self._look = look

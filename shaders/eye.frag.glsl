@@ -16,6 +16,8 @@ uniform vec3 iris_inner, iris_outer;
 uniform float iris_radius, pupil_radius;   // in radii; in radii of the iris
 uniform vec3 sclera;
 
+const vec3 CARUNCLE = vec3(0.50, 0.21, 0.18);
+
 void main() {
     mat3 axes = mat3(turned) / radius;
     vec3 view = normalize(eye_point.xyz - position), n = normalize(axes * local_normal);
@@ -33,15 +35,20 @@ void main() {
     iris *= smoothstep(pupil_radius, pupil_radius + 0.06, ri);
     float side = length(local.xy);
     float veins = smoothstep(0.60, 0.72, noise(vec3(local.xy * vec2(0.35, 1.4), 0.3)).g) * smoothstep(0.50, 0.85, side);
-    vec3 white = mix(sclera, sclera * vec3(0.90, 0.60, 0.54), 0.5 * smoothstep(0.45, 0.95, side) + 0.18 * veins);
+    vec3 white = mix(sclera, sclera * vec3(0.93, 0.66, 0.59), 0.6 * smoothstep(0.45, 0.95, side) + 0.18 * veins);
     white *= 1.0 - 0.35 * smoothstep(iris_radius + 0.10, iris_radius, edge);
 
     vec3 q = transpose(mat3(head)) * (position - centre) / radius;
     float over = dot(upper_lid, vec3(1.0, q.x, q.x * q.x)) - q.y, under = q.y - dot(lower_lid, vec3(1.0, q.x, q.x * q.x));
+    float from_corner = min(q.x - corners.x, corners.y - q.x);
+    float nasal = dot(centre, head[0].xyz) > 0.0 ? q.x - corners.x : corners.y - q.x;
+    float flesh = smoothstep(0.30, 0.17, nasal + 0.9 * abs(q.y + 0.10));   // the caruncle
+    white = mix(white, CARUNCLE, flesh);
     // the lids keep light off, most the upper one with its lashes; the globe turns away to the corners
     float shade = mix(0.10, 1.0, smoothstep(-0.04, 0.50, over)) * mix(0.45, 1.0, smoothstep(-0.05, 0.26, under));
-    shade *= mix(0.30, 1.0, smoothstep(-0.05, 0.42, min(q.x - corners.x, corners.y - q.x)));
+    shade *= mix(0.30, 1.0, max(smoothstep(-0.05, 0.42, from_corner), 0.55 * flesh));
     vec3 ns = normalize(mix(n, mat3(head)[2], 0.25));
+    n = normalize(n + flesh * (mat3(head) * vec3(0.9 * sign(q.x) * (0.12 - nasal) * 6.0, -5.0 * (q.y + 0.10), 0.0)));
     vec3 light = hemisphere(ns), behind = 0.8 * hemisphere(n), shine = vec3(0.0);
     vec3 mirror = reflect(-view, n);
     float bright = fresnel(0.028, max(dot(n, view), 0.02));
@@ -59,7 +66,7 @@ void main() {
     shine += hemisphere(mirror) * 0.9 * smoothstep(-0.1, 0.5, mirror.y);
     vec3 c = mix(white * light, iris * behind, on_iris) * shade;
     // the tears' edge along the lower lid
-    c += 0.16 * (light_colour[0].rgb + light_colour[1].rgb) * exp(-pow((under - 0.035) / 0.020, 2.0)) * smoothstep(0.05, 0.25, min(q.x - corners.x, corners.y - q.x)) * smoothstep(0.05, 0.2, over);
+    c += 0.16 * (light_colour[0].rgb + light_colour[1].rgb) * exp(-pow((under - 0.035) / 0.020, 2.0)) * smoothstep(0.05, 0.25, from_corner) * smoothstep(0.05, 0.2, over);
     c += shine * bright * smoothstep(0.0, 0.10, over) * mix(0.6, 1.0, on_iris) * smoothstep(-0.02, 0.06, under);
     colour = vec4(finish(c), 1.0);
 }

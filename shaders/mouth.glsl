@@ -26,6 +26,6 @@ vec2 mouth_reach(vec3 at) {
 // How much of the surroundings' light arrives; inside the mouth as the lips let in.
 float sky_light(float ambient, float lip, float mouth, float wet, vec3 at) {
     float light = max(max(ambient, mix(0.40, 0.80, mouth_light) * lip), 0.45 * wet);
-    float inside = mouth_reach(at).x * (0.04 + exp(-max(mouth_depth(at) - 0.010, 0.0) / 0.013));
+    float inside = mouth_reach(at).x * (0.08 + exp(-max(mouth_depth(at) - 0.010, 0.0) / 0.016));
     return mix(light, inside, mouth);
 }

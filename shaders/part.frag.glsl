@@ -11,6 +11,7 @@ centroid in vec3 reach;    // of the surroundings' light and the key light what 
 out vec4 colour;
 
 uniform vec3 teeth;
+uniform float shaded;   // how much less light the lower jaw gets, in the lips' shadow
 
 const vec3 GUM = vec3(0.46, 0.20, 0.185), TONGUE = vec3(0.40, 0.15, 0.145);
 
@@ -47,6 +48,6 @@ void main() {
         gloss += part * mix(sky_part, 1.0, 0.4) * light_colour[i].rgb * ggx(max(dot(n, h), 0.0), rough) * visibility(n_l, n_v, rough) * fresnel(0.045, max(dot(view, h), 0.0)) * n_l * PI;
     }
     gloss += sky_part * hemisphere(reflect(-view, n)) * fresnel(0.045, n_v) * 0.8;
-    float back = 0.05 + exp(-max(reach.z - 0.012, 0.0) / 0.013);   // it is dark in the throat
-    colour = vec4(finish(albedo * light * mix(back, 1.0, 0.25 * enamelled) + gloss * back), 1.0);
+    float back = 0.07 + exp(-max(reach.z - 0.014, 0.0) / 0.016);   // it is dark in the throat
+    colour = vec4(finish((1.0 - shaded) * (albedo * light * mix(back, 1.0, 0.25 * enamelled) + gloss * back)), 1.0);
 }

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
 from typing import Annotated
@@ -10,6 +10,7 @@ from typing import Annotated
 import numpy as np
 from pydantic import AfterValidator, Field
 
+from agentface.anatomy import asymmetry as own
 from agentface.anatomy.glb import MeshArrays, Shape, read_glb, texture_coordinates
 from agentface.anatomy.landmarks import Landmarks, load_landmarks
 from agentface.anatomy.muscle_set import MuscleSet
@@ -21,7 +22,7 @@ from agentface.anatomy.unwrap import unwrap, unwrap_centre, unwrap_cover
 from agentface.anatomy.volumes import PlacedVolume, VolumesFile, place_volumes, read_volumes
 from agentface.anatomy.wrinkles import PlacedTrain, WrinklesFile, place_trains, read_wrinkles
 from agentface.config import Table, load
-from agentface.conventions import SIDES, Floats, Indices
+from agentface.conventions import SIDES, Floats, Indices, check_fraction
 from agentface.errors import DataError, Fault
 from agentface.resources import DEFAULT_FACE, face_folder
 
@@ -84,6 +85,8 @@ class HeadModel:
         wrinkles_file: the table of the trains of wrinkles that follow no single vector muscle.
         volumes_file: the table of the volumes that muscles gather or hollow.
         own_uv: ``(V, 2)`` float32 0..1, the texture coordinates that the file has, or None.
+        gains: ``(COUNT,)`` float32, what a side makes of a contraction that an emotion asks of both.
+        part_moves: ``(3,)`` m by name: how far a part's centre is off that of the symmetric face.
     """
 
     name: str
@@ -106,6 +109,8 @@ class HeadModel:
     wrinkles_file: WrinklesFile
     volumes_file: VolumesFile
     own_uv: Floats | None
+    gains: Floats
+    part_moves: dict[str, Floats]
 
     @cached_property
     def muscles(self) -> MuscleSet:
@@ -150,20 +155,35 @@ class HeadModel:
 
     def eye_centre(self, side: str) -> Floats:
         """The centre ``(3,)`` m of the eyeball of side ``l`` or ``r``."""
-        return np.array(self.eyes.centre, np.float32) * np.array([1 if side == SIDES[0] else -1, 1, 1], np.float32)
+        return _eye_centre(self.eyes, side) + self.part_moves[f"eye_{side}"]
 
 
-def load_model(face: str | Path = DEFAULT_FACE, muscles: MusclesFile | None = None) -> HeadModel:
+def load_model(
+    face: str | Path = DEFAULT_FACE, muscles: MusclesFile | None = None, asymmetry: float = 1.0
+) -> HeadModel:
     """Read a face by name or from a folder; with ``muscles``, take these instead of its ``muscles.yaml``.
 
-    Raises UnknownNameError for an unknown face and DataError with the faults of the first file that has any.
+    ``asymmetry`` 0..1 is how much of its own asymmetry it has; without any it is its own mirror image.
+
+    Raises UnknownNameError for an unknown face, InvalidValueError for an asymmetry out of range, and DataError with the
+    faults of the first file that has any.
     """
+    check_fraction("asymmetry", asymmetry)
     folder = face_folder(face)
     meshes = read_glb(folder / "head.glb")
     skin = _checked_skin(folder / "head.glb", meshes)
     vertices = np.ascontiguousarray(skin.attributes["POSITION"], np.float32)
     eyes = load(folder / "eyes.yaml", EyesFile)
-    pupils = {f"pupil_{side}": _pupil(eyes, side) for side in SIDES}
+    lips = load_rings(folder / "lips.yaml", LipsFile, skin)
+    eyelids = load_rings(folder / "eyelids.yaml", EyelidsFile, skin)
+    shapes = dict(skin.shapes)
+    moves = np.zeros_like(vertices)
+    if own.SHAPE in shapes:
+        moves += np.float32(asymmetry) * shapes.pop(own.SHAPE).dense(len(vertices))
+    part_moves = own.part_moves(moves, lips, eyelids)
+    vertices = vertices + moves
+    ahead = np.array([0, 0, eyes.radius], np.float32)
+    pupils = {f"pupil_{side}": _eye_centre(eyes, side) + part_moves[f"eye_{side}"] + ahead for side in SIDES}
     return HeadModel(
         name=folder.name,
         folder=folder,
@@ -173,24 +193,30 @@ def load_model(face: str | Path = DEFAULT_FACE, muscles: MusclesFile | None = No
         shade=_fractions(skin, "_SHADE"),
         jaw_weights=skin.attributes["_JAW"].astype(np.float32),
         mirror=skin.attributes["_MIRROR"].astype(np.int32),
-        shapes=skin.shapes,
-        parts={name: meshes[name] for name in PARTS},
+        shapes=shapes,
+        parts={name: _moved(meshes[name], part_moves[name]) for name in PARTS},
         regions=load_regions(folder / "regions.yaml", len(vertices)),
         landmarks=load_landmarks(folder / "feature_points.yaml", vertices, pupils),
         eyes=eyes,
         jaw=load(folder / "jaw.yaml", JawFile),
-        lips=load_rings(folder / "lips.yaml", LipsFile, skin),
-        eyelids=load_rings(folder / "eyelids.yaml", EyelidsFile, skin),
+        lips=lips,
+        eyelids=eyelids,
         muscles_file=muscles or read_muscles(folder / "muscles.yaml"),
         wrinkles_file=read_wrinkles(folder / "wrinkles.yaml"),
         volumes_file=read_volumes(folder / "volumes.yaml"),
         own_uv=texture_coordinates(skin),
+        gains=own.gains_of(own.read_asymmetry(folder / "asymmetry.yaml"), asymmetry),
+        part_moves=part_moves,
     )
 
 
-def _pupil(eyes: EyesFile, side: str) -> Floats:
-    centre = np.array(eyes.centre, np.float32) + np.array([0, 0, eyes.radius], np.float32)
-    return centre * np.array([1 if side == SIDES[0] else -1, 1, 1], np.float32)
+def _eye_centre(eyes: EyesFile, side: str) -> Floats:
+    return np.array(eyes.centre, np.float32) * np.array([1 if side == SIDES[0] else -1, 1, 1], np.float32)
+
+
+def _moved(part: MeshArrays, move: Floats) -> MeshArrays:
+    positions = (part.attributes["POSITION"] + move).astype(np.float32)
+    return replace(part, attributes={**part.attributes, "POSITION": positions})
 
 
 def _fractions(mesh: MeshArrays, attribute: str) -> Floats:

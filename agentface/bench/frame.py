@@ -56,7 +56,7 @@ def run(model: HeadModel | None = None, rounds: int = 200, finest: int = FINEST)
     if model is None:
         from agentface.anatomy.model import load_model
 
-        model = load_model()
+        model = load_model(asymmetry=0.0)
     deformer, faces = GeometricDeformer(model), poses()
     tasks = _baseline(model)
     for name, pose in faces.items():

@@ -28,7 +28,7 @@ def anatomy_file() -> Path:
 def calibrate(face: str | Path, starts: int, seed: int, progress: Progress) -> MusclesFile:
     """Fit the muscles of a face to its artists' shapes; ``starts`` searches a group of action units."""
     anatomy = read_muscles(anatomy_file())
-    model = load_model(face, muscles=anatomy)
+    model = load_model(face, muscles=anatomy, asymmetry=0.0)
     rng = np.random.default_rng(seed)
     muscles = dict(anatomy.muscles)
     for group in groups(list(load_action_units().values())):

@@ -71,7 +71,7 @@ def _measure(faces: Sequence[str] | None, output: str | None, json_file: str | N
     from agentface.calibration.calibrate import table
     from agentface.resources import face_names
 
-    models = [load_model(face) for face in faces or face_names()]
+    models = [load_model(face, asymmetry=0.0) for face in faces or face_names()]
     if json_file is not None:
         units = load_action_units()
         write_json(json_file, {model.name: _figures(measure(model, units)) for model in models})
@@ -107,13 +107,13 @@ def _fit(face: str, starts: int, seed: int, dry_run: bool, json_file: str | None
 
     path = face_folder(face) / "muscles.yaml"
     units = load_action_units()
-    model = load_model(face, muscles=None if path.exists() else read_muscles(fitting.anatomy_file()))
+    model = load_model(face, None if path.exists() else read_muscles(fitting.anatomy_file()), asymmetry=0.0)
     if not dry_run:
         check_writable(path)
     before = measure(model, units)
     with _progress(starts) as progress:
         fitted = fitting.calibrate(face, starts, seed, progress)
-    after = measure(load_model(face, muscles=fitted), units)
+    after = measure(load_model(face, muscles=fitted, asymmetry=0.0), units)
     if json_file is not None:
         write_json(json_file, {"before": _figures(before), "after": _figures(after)})
     if json_file != "-":

@@ -8,7 +8,7 @@ from typing import Protocol
 
 import numpy as np
 
-from agentface.conventions import Doubles
+from agentface.conventions import Doubles, Floats
 from agentface.emotion.state import EMOTIONS, EmotionState
 from agentface.motion.envelope import Envelope
 from agentface.parameters import COUNT, MUSCLES, NAMES, PARAMETERS, indices_of
@@ -24,11 +24,13 @@ class Contractor(Protocol):
 class EmotionChannel:
     """Six target intensities, each with its own end, and the contractions that the rules make of them.
 
-    The change goes muscle by muscle from the contractions shown now to those of the new state.
+    The change goes muscle by muscle from the contractions shown now to those of the new state; of these each side of
+    the face makes its ``gains (COUNT,)``.
     """
 
-    def __init__(self, inference: Contractor) -> None:
+    def __init__(self, inference: Contractor, gains: Floats | None = None) -> None:
         self._inference = inference
+        self._gains = np.ones(COUNT) if gains is None else gains.astype(np.float64)
         self.target = EmotionState()
         self.intensities = Envelope(len(EMOTIONS))
         self._muscles = Envelope(len(MUSCLES))
@@ -60,7 +62,7 @@ class EmotionChannel:
 
     def write(self, values: Doubles) -> None:
         """Put the contractions shown now into ``values`` ``(COUNT,)``."""
-        values[self._places[0]] = self._muscles.value[self._places[1]]
+        values[self._places[0]] = self._gains[self._places[0]] * self._muscles.value[self._places[1]]
 
     def _advance(self, dt: float) -> None:
         self._left -= dt

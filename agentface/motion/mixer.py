@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from agentface.conventions import Floats
 from agentface.motion.blink import BlinkChannel
 from agentface.motion.channels import Contractor, EmotionChannel, MuscleChannel, TurnChannel
 from agentface.parameters import COUNT, FacePose
@@ -14,10 +15,11 @@ class Mixer:
 
     Contractions of different channels merge by their maximum: two causes do not contract a muscle twice. A
     muscle that is set by name comes last and wins over all of them. Gaze and head have parameters of their own.
+    ``gains (COUNT,)`` is what the sides of the face make of what an emotion asks of both.
     """
 
-    def __init__(self, inference: Contractor) -> None:
-        self.emotion = EmotionChannel(inference)
+    def __init__(self, inference: Contractor, gains: Floats | None = None) -> None:
+        self.emotion = EmotionChannel(inference, gains)
         self.blink = BlinkChannel()
         self.muscles = MuscleChannel()
         self.gaze = TurnChannel("gaze")

@@ -66,7 +66,7 @@ def brow_hairs(model: HeadModel, normals: Floats, look: HairLook, rng: np.random
         x, y = line.place(s)
         places.append(np.stack([side * x, y + off * line.half_height(s)], axis=1))
         # hairs stand up at the inner end and lie along the brow farther out, leaning to its middle line
-        lean = np.radians(58 * np.exp(-7 * s) + 18 * (1 - s) - 22 * off * (s > 0.2) + rng.normal(0, 7, count))
+        lean = np.radians(46 * np.exp(-6 * s) + 18 * (1 - s) - 22 * off * (s > 0.2) + rng.normal(0, 7, count))
         length = 0.0070 * line.scale * (0.6 + 0.6 * rng.random(count)) * (1 - 0.3 * s)
         halfway, end = (_turned(line.direction(s), lean * part) * length[:, None] for part in (1.0, 0.55))
         flats.append(np.stack([0.5 * halfway, 0.25 * halfway + 0.75 * end], axis=1) * [side, 1.0])
@@ -104,8 +104,10 @@ def _lash_row(
     half = half if side == "l" else half[::-1]  # from the temple inward on both sides
     outward = np.linspace(0.95, 0.10, count) + rng.normal(0, 0.006, count)  # 1 at the temple
     roots = roots_along(half, model.vertices, np.clip(1 - outward, 0.0, 1.0))
-    lengths = (length * (0.55 + 0.55 * outward) * (0.8 + 0.35 * rng.random(count)))[:, None]
-    fan = ((outward - 0.45) * 1.1 + rng.normal(0, 0.16, count))[:, None] * (1.0 if side == "l" else -1.0)
+    lengths = (length * (0.45 + 0.65 * outward) * (0.7 + 0.5 * rng.random(count)))[:, None]
+    # lashes stick together by threes and fours, and are unequal
+    bundles = np.repeat(rng.normal(0, 0.16, count), rng.integers(2, 5, count))[:count]
+    fan = ((outward - 0.45) * 1.1 + bundles + rng.normal(0, 0.06, count))[:, None] * (1.0 if side == "l" else -1.0)
     rise = (-0.10, 0.50) if upper else (-0.10, -0.35)
     reach = (0.50, 0.68) if upper else (0.60, 0.90)
     bends = lengths * np.concatenate([0.35 * fan, np.full_like(fan, rise[0]), np.full_like(fan, reach[0])], axis=1)

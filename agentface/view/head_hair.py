@@ -12,10 +12,12 @@ from agentface.view.camera import Camera
 from agentface.view.cap import Cap, scalp_cap
 from agentface.view.grow import grow
 from agentface.view.hair import Hairline
+from agentface.view.hull import Hull
 from agentface.view.look import HairLook
 from agentface.view.programs import Programs
-from agentface.view.sheets import SheetArray, sheets
+from agentface.view.sheets import Sheet, SheetArray, flyaways, parting_line, sheets
 from agentface.view.strands import StrandArray
+from agentface.view.styles import PARTED, STYLES
 
 _SEED = 20
 _STREAKS = {"fast": 6.0, "portrait": 7.0}
@@ -34,13 +36,14 @@ class HeadHair:
         self._strands: dict[str, StrandArray] = {}
         cap["hair_colour"].value = tuple(look.colour)
         cap["coils"].value = float(look.style == "cropped")
+        cap["parting"].value = _parting(model, look)
         self._centre = np.array([0.0, 0.4 * model.landmarks.eye_separation, -0.012])
         strand["hair_centre"].value = tuple(self._centre)
         self._sheets: SheetArray | None = None
-        if look.style == "bob":
-            self._sheets = SheetArray(
-                context, sheet, sheets(model, look, np.random.default_rng(_SEED)), self._centre[1]
-            )
+        self._grown: list[Sheet] = []
+        if look.style in PARTED:
+            self._grown = sheets(model, look, np.random.default_rng(_SEED))
+            self._sheets = SheetArray(context, sheet, self._grown, self._centre[1])
             sheet["hair_colour"].value = tuple(look.colour)
         programs.set({"gloss": _GLOSS[look.style]})
 
@@ -67,7 +70,19 @@ class HeadHair:
 
     def _strands_for(self, quality: str) -> StrandArray:
         if quality not in self._strands:
-            model = self._model
-            strands = grow(model, model.normals, self._look, quality, np.random.default_rng(_SEED))
+            model, look, rng = self._model, self._look, np.random.default_rng(_SEED)
+            if self._grown:
+                growth = flyaways(self._grown, STYLES[look.style].amounts[quality], look, rng)
+                strands = growth.strands(model)
+            else:
+                strands = grow(model, model.normals, look, quality, rng)
             self._strands[quality] = StrandArray(self._context, self._program, strands, model, self._centre)
         return self._strands[quality]
+
+
+def _parting(model: HeadModel, look: HairLook) -> tuple[float, float, float, float]:
+    """The uniform ``parting`` of ``shaders/cap.frag.glsl``; far from the head where there is none."""
+    if look.style not in PARTED:
+        return 1.0, 1.0, 1.0, 1.0
+    line = parting_line(model, look, Hull(model, ears=True))
+    return float(line[0, 0]), float(line[0, 2]), float(line[-1, 0]), float(line[-1, 2])

@@ -13,12 +13,14 @@ from agentface.deform.geometry import FaceGeometry
 from agentface.view.parts import RigidPart
 from agentface.view.teeth import crown_places
 
+_SHADED = 0.25  # of the light on the lower jaw, which the upper lip and the nose keep off
+
 
 class Mouth:
     """What is behind the lips, on the GPU."""
 
     def __init__(self, context: Any, program: Any, model: HeadModel) -> None:
-        self._model = model
+        self._model, self._program = model, program
         self._parts = {name: _part(context, program, model, name) for name in ("teeth_upper", "teeth_lower", "tongue")}
         ring = model.lips.rings[LipRing.LINING]
         self._corners = ring.upper[0], ring.upper[-1]
@@ -26,7 +28,9 @@ class Mouth:
 
     def draw(self, geometry: FaceGeometry) -> None:
         """Draw it as ``geometry`` has it."""
+        self._program["shaded"].value = 0.0
         self._parts["teeth_upper"].draw(geometry.head)
+        self._program["shaded"].value = _SHADED
         for name in ("teeth_lower", "tongue"):
             self._parts[name].draw(geometry.head @ geometry.jaw)
 

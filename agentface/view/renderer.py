@@ -197,6 +197,7 @@ class Renderer:
         self.context.enable(self.context.CULL_FACE)
         self._mouth.draw(geometry)
         self._shirt.draw(np.eye(4, dtype=np.float32))
+        self._programs["lining"]["shaded"].value = 0.0
         for lining in self._linings:
             lining.draw()
         for eye in self._eyes:

@@ -11,13 +11,14 @@ from agentface.anatomy.model import HeadModel
 from agentface.conventions import SIDES, Doubles, Floats, Indices
 from agentface.smoothstep import smoothstep
 from agentface.view.grow import smoothed, waves
+from agentface.view.growth import Growth, paints
 from agentface.view.hair import Hairline
 from agentface.view.hull import Hull
 from agentface.view.look import HairLook
 from agentface.view.ribbons import unit_rows
-from agentface.view.styles import REFERENCE_EYES, STYLES, parting_of, whorl_of
+from agentface.view.styles import REFERENCE_EYES, STYLES, Amount, parting_of, whorl_of
 
-_COLUMNS, _ROWS = 64, 16
+_COLUMNS, _ROWS = 60, 22
 _INNER_FROM, _INNER_ROWS = 0.4, 8
 """The inner sheet is seen between tips only."""
 _LAYERS = (1.0, 0.6)
@@ -33,6 +34,10 @@ _LOCKS = 13
 _WIDTHS = 0.3, 1.7
 """Of the spaces between columns, in locks, as parts of their mean."""
 _RIDGE, _UNEVEN = 0.0016, 0.05
+_LOWEST = 0.0035
+"""Metres over the hull, which is smoother than the head."""
+_AWAY, _TO_THE_FRONT = 0.004, 2.0
+"""Metres that single hairs leave a sheet; the exponent with which their columns gather at the face."""
 _TUCKED = 0.3
 """How high the front edge lies, as a part of the hair's thickness."""
 """Metres that a lock rises over the gaps beside it; the part by which the lengths of locks differ."""
@@ -94,8 +99,8 @@ def _paths(model: HeadModel, look: HairLook, hull: Hull, sign: float) -> Doubles
     return hull.push_out(smoothed(path, _SMOOTHINGS), 0.0)
 
 
-def _roots(model: HeadModel, look: HairLook, hull: Hull, sign: float) -> Doubles:
-    """``(C, 3)`` m along the parting from the hairline back, then round the whorl to the middle of the back."""
+def parting_line(model: HeadModel, look: HairLook, hull: Hull) -> Doubles:
+    """``(N, 3)`` m on the hull: the parting from the hairline back to the whorl."""
     line, whorl = Hairline(model, look.hairline), whorl_of(model, look)
     pitch = np.radians(np.linspace(85.0, -30.0, 400))
     top = hull.hold(hull.centre + 0.1 * np.stack([0 * pitch, np.cos(pitch), np.sin(pitch)], axis=1), 0.0, 0.0)
@@ -103,8 +108,13 @@ def _roots(model: HeadModel, look: HairLook, hull: Hull, sign: float) -> Doubles
     top[:, 0] = whorl[0] + (parting_of(model, look) - whorl[0]) * part
     top = hull.hold(top, 0.0, 0.0)
     first, last = int(np.argmax(line.behind(top) > 0.001)), int(np.argmax(top[:, 2] < whorl[2]))
-    count = round(_ON_PARTING * _COLUMNS)
-    chosen = top[np.linspace(first, last, count).astype(int)]
+    return top[first:last]
+
+
+def _roots(model: HeadModel, look: HairLook, hull: Hull, sign: float) -> Doubles:
+    """``(C, 3)`` m along the parting from the hairline back, then round the whorl to the middle of the back."""
+    line, count = parting_line(model, look, hull), round(_ON_PARTING * _COLUMNS)
+    chosen = line[np.linspace(0, len(line) - 1, count).astype(int)]
     fan = np.radians(np.linspace(90.0, 190.0, _COLUMNS - count))
     round_whorl = chosen[-1] + 0.004 * np.stack([sign * np.sin(fan), 0 * fan, np.cos(fan)], axis=1)
     chosen[:, 0] += sign * _BESIDE
@@ -116,12 +126,13 @@ def _sheet(
 ) -> Sheet:
     widths = rng.uniform(*_WIDTHS, _COLUMNS - 1)
     across = np.concatenate([[0.0], np.cumsum(widths)]) * _LOCKS / widths.sum()
-    t = np.linspace(0.0, 1.0, _ROWS) if layer == 1.0 else np.linspace(_INNER_FROM, 1.0, _INNER_ROWS)
+    t = np.linspace(0.0, 1.0, _ROWS) ** 1.3 if layer == 1.0 else np.linspace(_INNER_FROM, 1.0, _INNER_ROWS)
     uneven = np.interp(across, np.arange(_LOCKS + 1), rng.uniform(0.0, 1.0, _LOCKS + 1))
     points, along = _resampled(paths, t, (1.0 - _UNEVEN * uneven) * (0.94 + 0.06 * layer))
     ridge = np.sin(np.pi * (across % 1.0))[:, None] - 0.5
     tucked = _TUCKED + (1.0 - _TUCKED) * smoothstep(0.0, 1.5, across)[:, None]
     height = thickness * layer * tucked * (0.12 + 0.88 * smoothstep(0.0, 0.045, along)) + _RIDGE * np.sqrt(t) * ridge
+    height = np.maximum(height, 0.001 + _LOWEST * smoothstep(0.0, 0.03, along))
     points = points + height[..., None] * hull.outward(points)
     if look.curl:
         points = points + 0.006 * look.curl * waves(hull, points, along, uneven)
@@ -139,6 +150,26 @@ def _resampled(paths: Doubles, t: Doubles, share: Doubles) -> tuple[Doubles, Dou
     for column, (line, known, wanted) in enumerate(zip(paths, way, along, strict=True)):
         points[column] = np.stack([np.interp(wanted, known, line[:, axis]) for axis in range(3)], axis=1)
     return points, along
+
+
+def flyaways(grown: list[Sheet], amount: Amount, look: HairLook, rng: np.random.Generator) -> Growth:
+    """Single hairs that leave the outer sheets: most of them frame the face."""
+    outer = [sheet for sheet in grown if sheet.points.shape[1] == _ROWS]
+    count, t = amount.hairs, np.linspace(0.0, 1.0, amount.points)
+    column = np.floor(_COLUMNS * rng.random(count) ** _TO_THE_FRONT).astype(int)
+    lines = np.stack([sheet.points for sheet in outer]).astype(np.float64)[rng.integers(0, len(outer), count), column]
+    from_row, share = np.floor(rng.random(count) * 0.5 * _ROWS), rng.uniform(0.25, 0.6, count)
+    row = np.minimum(from_row[:, None] + share[:, None] * _ROWS * t, _ROWS - 1.001)
+    low, part = row.astype(int), (row % 1.0)[..., None]
+    each = np.arange(count)[:, None]
+    points = (1.0 - part) * lines[each, low] + part * lines[each, low + 1]
+    away = unit_rows(points - outer[0].centre)
+    off = rng.uniform(0.0, _AWAY, count)[:, None] * np.sin(np.pi * t * rng.uniform(0.5, 1.0, (count, 1)))
+    drift = rng.normal(0.0, 0.5 * _AWAY, (count, 1, 3)) * (t**2)[:, None]
+    points = points + off[..., None] * away + drift
+    paint = paints(look, np.full(count, 1.3), np.full(count, 0.7), rng, 0.4)
+    return Growth(points, amount.radius * rng.uniform(0.6, 1.2, count), paint, np.ones((count, len(t))),
+                  np.ones(count), np.ones(count))  # fmt: skip
 
 
 class SheetArray:

@@ -62,13 +62,17 @@ STYLES = {
     ),
     "bob": Style(
         0.012, 0.040, 0.72, 0.16, 0.32, 0.94, True,
-        {"fast": Amount(0, 0.0043, 80, 0.0007, 6), "portrait": Amount(0, 0.0027, 260, 0.00030, 8)},
+        {"fast": Amount(0, 0.0, 90, 0.0006, 5), "portrait": Amount(0, 0.0, 300, 0.00030, 7)},
     ),
     "bun": Style(
         0.007, 0.060, 0.55, 0.0, 0.35, 0.84, False,
         {"fast": Amount(420, 0.0032, 200, 0.0007, 8), "portrait": Amount(900, 0.0022, 900, 0.00040, 11)},
     ),
 }  # fmt: skip
+
+
+PARTED = ("bob",)
+"""Styles whose hair falls from a parting: drawn as sheets."""
 
 
 def parting_of(model: HeadModel, look: HairLook) -> float:

@@ -8,25 +8,32 @@ from typing import Any
 
 import numpy as np
 
+from agentface.anatomy.asymmetry import SHAPE
 from agentface.anatomy.build import mouth_parts
 from agentface.anatomy.build.fold import fold_lids
-from agentface.anatomy.build.identity import Recipe, close_lips, person
+from agentface.anatomy.build.identity import Recipe, asymmetry, close_lips, person
 from agentface.anatomy.build.jaw import JawShares, jaw_shares
 from agentface.anatomy.build.partition import Loops, base_labels, find_loops, halves, order_by_region, partition, ranges
 from agentface.anatomy.build.source import BaseMesh
 from agentface.anatomy.build.splits import WHOLE, across_rings, between_rings
 from agentface.anatomy.build.thin import Thinner
 from agentface.anatomy.build.topology import Skin
+from agentface.anatomy.evening import evened
 from agentface.anatomy.glb import MeshArrays, Shape
 from agentface.anatomy.regions import REGIONS, REST
 from agentface.anatomy.ring_names import LidRing, LipRing
-from agentface.conventions import Doubles, Indices
+from agentface.conventions import SIDES, Doubles, Indices
+from agentface.smoothstep import falloff
 
 _FACE, _BAG, _BODY, _SOCKETS = 0, 1, 2, {"r": 3, "l": 6}
 _NECK_BOTTOM = 5.6
 _THINNED, _THINNED_EARS = 120, 60
 _SMALLEST_OFFSET = 5e-6
 METRES = 0.1
+_EVENINGS = 20
+"""How often the asymmetry is evened out: lids, lips and teeth go along without being bent."""
+_EYE_WHOLE, _EYE_ENDS = 1.5, 2.6
+"""Radii from an eye's centre within which all goes along with it, and beyond which nothing does."""
 _LID_SPLITS = (6, 7, 8)
 """Base rings of the lids behind which another one is put in: the crease above the upper lid is deep and narrow."""
 _CORNER_SPLITS = (0, 1, 2)
@@ -231,6 +238,7 @@ def build_head(topology: HeadTopology, recipe: Recipe, jaw_table: JawShares) -> 
     ear = points[topology.landmarks["ear_front_l"]["vertices"]][0]
     origin = np.array([0.0, centre[1], ear[2]])
     shapes = {name: skin.place(mesh.face_unit(name)) for name in mesh.face_units()}
+    uneven = _rigid_eyes(topology, evened(skin.place(asymmetry(mesh, recipe)), skin.triangles, _EVENINGS), points)
     guide = _artists_jaw(points - origin, shapes["jawOpen"], *hinge(base, mesh, origin))
     jaw = jaw_shares(topology, points, guide, jaw_table, unit=2.0 * centre[0])
     meshes = {
@@ -243,7 +251,7 @@ def build_head(topology: HeadTopology, recipe: Recipe, jaw_table: JawShares) -> 
                 "_JAW": jaw.astype(np.float32),
                 "_MIRROR": skin.mirror.astype(np.float32),
             },
-            {name: _sparse(offsets) for name, offsets in shapes.items()},
+            {name: _sparse(offsets) for name, offsets in {**shapes, SHAPE: uneven}.items()},
         )
     }
     parts = {
@@ -261,6 +269,19 @@ def build_head(topology: HeadTopology, recipe: Recipe, jaw_table: JawShares) -> 
         meshes[name] = MeshArrays(part.triangles, attributes, tongue_out if name == "tongue" else {})
     meshes["lashes"] = _lashes(base - origin, mesh)
     return Head(meshes, METRES * (centre - origin), float(METRES * radius), origin)
+
+
+def _rigid_eyes(topology: HeadTopology, offsets: Doubles, points: Doubles) -> Doubles:
+    """Offsets ``(V, 3)`` that move the surroundings of an eye as one, so that its lids still close."""
+    result = offsets.copy()
+    for side in SIDES:
+        upper, lower = topology.lid_rings(side)[LidRing.INNER_MARGIN]
+        margin = upper + lower[1:-1]
+        centre, move = points[margin].mean(0), offsets[margin].mean(0)
+        radius = 0.5 * np.ptp(points[margin, 0])
+        near = falloff(np.linalg.norm(points - centre, axis=1) / radius, _EYE_WHOLE, _EYE_ENDS)
+        result += near[:, None] * (move - result)
+    return result
 
 
 def _lashes(base: Doubles, mesh: BaseMesh) -> MeshArrays:

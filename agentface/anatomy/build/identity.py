@@ -30,6 +30,7 @@ class Recipe(Table):
     targets: dict[str, Weight]
     resting_shapes: dict[str, Weight] = {}
     lid_fold: LidFold = LidFold()
+    asymmetry: dict[str, Weight] = {}
 
 
 def person(mesh: BaseMesh, recipe: Recipe) -> Doubles:
@@ -54,6 +55,11 @@ def person(mesh: BaseMesh, recipe: Recipe) -> Doubles:
     for name, part in recipe.resting_shapes.items():
         positions += part * mesh.face_unit(name)
     return 0.5 * (positions + (positions * [-1, 1, 1])[mesh.mirror])
+
+
+def asymmetry(mesh: BaseMesh, recipe: Recipe) -> Doubles:
+    """The offsets ``(N, 3)`` by which the person's bones differ from the symmetric ones, in decimetres."""
+    return sum((part * mesh.target(name) for name, part in recipe.asymmetry.items()), np.zeros_like(mesh.positions))
 
 
 def _builds(recipe: Recipe) -> list[tuple[str, float]]:

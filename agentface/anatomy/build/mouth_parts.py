@@ -15,11 +15,11 @@ _UPPER = ((8.5, 10.5, 0.3), (6.5, 9.0, 0.4), (7.5, 10.0, 1.6), (7.0, 8.5, 1.1), 
           (9.0, 7.0, 0.4))  # fmt: skip
 _LOWER = ((5.2, 9.0, 0.15), (5.6, 9.2, 0.2), (6.8, 10.0, 1.2), (7.0, 8.5, 0.9), (7.1, 8.0, 0.6), (10.0, 7.5, 0.4),
           (9.5, 7.0, 0.4))  # fmt: skip
-_SMALLER = (0.90, 0.92, 0.9)
-"""The base mesh's heads are smaller than Wheeler's patients."""
+_SMALLER = (0.90, 1.02, 0.9)
+"""Parts of these: the base mesh's heads are smaller than Wheeler's patients, and bare more of their teeth."""
 # The base mesh's strips are wider than an arch of single teeth, and its lower strip reaches high behind the upper one:
-# the rows meet edge to edge, 2.5 mm below where the lips touch, so that a parted mouth shows the upper teeth.
-_ARCH_WIDTH, _SHOW_UPPER, _SINK_LOWER = 0.86, 0.026, 0.072
+# the rows meet edge to edge, 3.5 mm below where the lips touch, so that a parted mouth shows the upper teeth.
+_ARCH_WIDTH, _SHOW_UPPER, _SINK_LOWER = 0.86, 0.036, 0.082
 _ACROSS = np.array([-1.0, -0.86, -0.5, 0.0, 0.5, 0.86, 1.0])
 # a crown's front from behind its edge to the gum: where, how wide, how far forward, both as parts
 _ROWS = ((0.03, 0.80, -1.4), (0.0, 0.86, 0.35), (0.10, 0.98, 0.75), (0.42, 1.03, 1.0), (1.0, 0.90, 0.75))
@@ -123,8 +123,8 @@ def tongue(positions: Doubles, quads: Indices) -> PartMesh:
 
 def eyeball(centre: Doubles, radius: float) -> PartMesh:
     """A globe with a bulging cornea looking along +Z; vertices in rings round the axis, from the cornea's apex back."""
-    around, along = 32, 20
-    polar = np.concatenate([np.linspace(0, 0.62, 9)[1:], np.linspace(0.62, 0.72 * np.pi, along - 8)[1:]])
+    around = 24
+    polar = np.concatenate([np.linspace(0, 0.62, 8)[1:], np.linspace(0.62, 0.62 * np.pi, 6)[1:]])
     turn = np.linspace(0, 2 * np.pi, around, endpoint=False)
     bulge = 1 + 0.075 * np.clip(1 - np.sin(polar) / 0.47, 0, 1) ** 0.8 * (polar < 1.5)
     ring = np.stack([np.cos(turn), np.sin(turn)], 1)
