@@ -19,6 +19,6 @@ def read_once():
     """Every face of a process takes the model, and every deformer the tables, that the first one made."""
     with pytest.MonkeyPatch.context() as patch:
         for module in ("agentface.anatomy.model", "agentface.face"):
-            patch.setattr(f"{module}.load_model", heads.head_model)
+            patch.setattr(f"{module}.load_model", heads.uneven_model)
         patch.setattr("agentface.deform.frame.prepare", heads.tables)
         yield

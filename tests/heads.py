@@ -17,14 +17,25 @@ _prepare = frame.prepare
 _prepared = cache(_prepare)
 
 
-def head_model(face: str | Path = DEFAULT_FACE, muscles: MusclesFile | None = None) -> HeadModel:
-    """As :func:`load_model`, which reads a folder anew each time."""
-    return _read(face) if face in face_names() and muscles is None else load_model(face, muscles)
+def head_model(
+    face: str | Path = DEFAULT_FACE, muscles: MusclesFile | None = None, asymmetry: float = 0.0
+) -> HeadModel:
+    """As :func:`load_model`, which reads a folder anew each time; its own mirror image if nothing else is said."""
+    if face in face_names() and muscles is None:
+        return _read(face, asymmetry=asymmetry)
+    return load_model(face, muscles, asymmetry)
+
+
+def uneven_model(
+    face: str | Path = DEFAULT_FACE, muscles: MusclesFile | None = None, asymmetry: float = 1.0
+) -> HeadModel:
+    """As :func:`load_model`."""
+    return head_model(face, muscles, asymmetry)
 
 
 def tables(model: HeadModel) -> tuple[frame.PartTables, MuscleSet]:
     """As :func:`frame.prepare`, whose tables deformers share anyway: each has points of its own."""
-    shipped = any(_read(face) is model for face in face_names())
+    shipped = any(_read(face, asymmetry=part) is model for face in face_names() for part in (0.0, 1.0))
     return _prepared(model) if shipped else _prepare(model)
 
 

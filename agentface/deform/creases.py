@@ -23,6 +23,13 @@ _RINGS = 2  # of triangles beyond these, over which what is pushed can spread
 _HALVED = 2e-4  # m, the way at which a vertex gives way sqrt(1/2) times as much as where nothing moves
 _LOST = 0.4
 _PASSES = 2
+_MOVES = {
+    "levator_palpebrae_l": 1.0,
+    "orbicularis_oculi_orbitalis_l": 1.0,
+    "orbicularis_oculi_palpebralis_l": 1.0,
+    "orbicularis_oris_press": 0.5,
+    "orbicularis_oris_pucker": 0.5,
+}
 
 
 def prepare(model: HeadModel, of_eyelids: EyelidsTables, of_lips: LipTables) -> SquashTables:
@@ -31,7 +38,7 @@ def prepare(model: HeadModel, of_eyelids: EyelidsTables, of_lips: LipTables) -> 
     They have their turn from where lids and lips move most outward, and give way the more the farther out: what is
     pushed up there is handed on to where the skin has room.
     """
-    wide, pressed, puckered = _moves(model, of_eyelids, of_lips)
+    wide, squeezed, shut, pressed, puckered = _moves(model, of_eyelids, of_lips)
     held = np.zeros(len(model.vertices))
     held[of_eyelids.vertex] = of_eyelids.fields[:, HOLD]
     points = model.vertices.astype(np.float64)
@@ -40,22 +47,24 @@ def prepare(model: HeadModel, of_eyelids: EyelidsTables, of_lips: LipTables) -> 
         for i, name in enumerate(model.muscles.names)
         if name.endswith("_l")
     ]
-    way = np.max([np.linalg.norm(move, axis=1) for move in (wide, pressed + puckered)], axis=0)
+    way = np.max([np.linalg.norm(move, axis=1) for move in (wide, squeezed, shut, pressed + puckered)], axis=0)
     way = np.maximum(way, way[model.mirror])
     near = way > _TOUCHED
     for _ in range(_RINGS):
         near[model.triangles[near[model.triangles].any(axis=1)]] = True
     free = (1.0 - held) * (1.0 - model.material[:, :3].max(axis=1)) / np.sqrt(1.0 + way / _HALVED)
     free = np.minimum(free, free[model.mirror])
-    moves = [*of_muscles, wide, pressed, puckered]
+    moves = [*of_muscles, wide, squeezed, shut, pressed, puckered]
     return squash.tables_of(model, moves, free, near, outward=-way, lost=_LOST, passes=_PASSES)
 
 
 def _moves(model: HeadModel, of_eyelids: EyelidsTables, of_lips: LipTables) -> list[Doubles]:
-    """``(V, 3)`` m from rest each: the left lid wide open; half of a press and of a pucker, whose images count too."""
+    """``(V, 3)`` m from rest each: the left lid wide open, the eye squeezed, the lid shut; half of a press and of a
+    pucker, whose images count too.
+    """
     rest = np.concatenate([model.vertices, of_lips.control_rest])
     moves = []
-    for name, part in (("levator_palpebrae_l", 1.0), ("orbicularis_oris_press", 0.5), ("orbicularis_oris_pucker", 0.5)):
+    for name, part in _MOVES.items():
         values, there = FacePose.of(**{name: 1.0}).values, rest.copy()
         lips.contract(of_lips, values, there)
         eyelids.apply(of_eyelids, values, there)

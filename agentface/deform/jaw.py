@@ -24,6 +24,7 @@ from agentface.anatomy.model import HeadModel
 from agentface.conventions import Doubles, Floats, Indices
 from agentface.deform.lip_surface import mirrored_controls
 from agentface.parameters import indices_of
+from agentface.smoothstep import falloff
 
 Follow: TypeAlias = tuple[Indices, Floats]
 """For points that are not vertices, ``(C, k)`` vertices whose weighted mean, ``(C, k)``, each one's share is."""
@@ -34,6 +35,8 @@ _CORNER = 1000.0  # vertices that a corner of the lips counts for: there the pap
 _PRIOR = 1e-3
 _STEPS = 1500
 _EVENINGS = 6
+_REACH = 1.1, 1.0, 0.62
+"""Eye separations from the corners of the mouth aside, up and down within which skin is drawn back."""
 _TAUT = 0.6  # of what the artists' shape draws back: the rest would go through the upper teeth
 JAW_SHAPE = "jawOpen"
 
@@ -91,7 +94,17 @@ def _drawn(model: HeadModel) -> Doubles:
     turned = np.sin(angle) * up + (np.cos(angle) - 1.0) * forward
     beyond = model.shapes[JAW_SHAPE].dense(len(rest))[:, ::2] - np.column_stack([0.0 * turned, turned])
     beyond[:, 1] = np.minimum(beyond[:, 1], 0.0)
-    return _TAUT * evened(beyond, model.triangles, _EVENINGS)
+    return _TAUT * _beside_the_mouth(model)[:, None] * evened(beyond, model.triangles, _EVENINGS)
+
+
+def _beside_the_mouth(model: HeadModel) -> Doubles:
+    """``(V,)`` 0..1: 1 from the middle of the lips out to the cheeks, 0 on the chin, which is bone, and far away."""
+    corner = model.landmarks["mouth_corner_l"].astype(np.float64)
+    aside = np.maximum(np.abs(model.vertices[:, 0]) - corner[0], 0.0)
+    up, ahead = (model.vertices[:, 1:] - corner[1:]).T
+    reach = np.where(up > 0.0, _REACH[1], _REACH[2])
+    distance = np.sqrt((aside / _REACH[0]) ** 2 + (up / reach) ** 2 + (np.minimum(ahead, 0.0) / _REACH[0]) ** 2)
+    return falloff(distance / model.landmarks.eye_separation, 0.3, 1.0)
 
 
 def _spanned(model: HeadModel, prior: Doubles, surface: Surface) -> Doubles:

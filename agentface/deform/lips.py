@@ -127,7 +127,7 @@ def contract(tables: LipTables, values: Floats, points: Floats) -> None:
     """
     levels = contraction_levels(tables, values)
     control = points[tables.skin_count :]
-    thinner = thinning(_width(control), tables.width)
+    thinner = thinning(_width(control), tables.width) * max(np.float32(0.0), np.float32(1.0) - levels[:2].sum())
     if not levels.any() and thinner == 0.0:
         return
     rows = control.reshape(COLUMNS, ROWS, 3)

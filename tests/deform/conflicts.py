@@ -10,12 +10,13 @@ import numpy as np
 from numba import njit
 
 from agentface.anatomy.model import HeadModel
+from agentface.anatomy.ring_names import LidRing
 from agentface.conventions import SIDES
 from agentface.deform.geometry import FaceGeometry
 from agentface.parameters import PARAMETERS, FacePose
 
-UPPER_LID_RINGS, LOWER_LID_RINGS = 9, 7
-"""Rings of the lids that fold: those of the lids' regions, and two more to the crease above the upper lid."""
+UPPER_LID_RINGS, LOWER_LID_RINGS = LidRing.FOLD + 1, LidRing.PLATE + 2
+"""Rings of the lids that fold: those of the lids' regions, and above the upper lid those of the crease."""
 DEPTH = 0.008
 """How far behind the surface of a tooth or an eye skin is looked for, in metres."""
 

@@ -15,9 +15,9 @@ if TYPE_CHECKING:
     from agentface.anatomy.build.head import HeadTopology
 
 _DECIMETRES = 0.01  # a millimetre
-_SUNK = {LidRing.CREASE - 1: 0.55, LidRing.CREASE: 1.0, LidRing.CREASE + 1: 0.7}
-_HANGING = {LidRing.CREASE + 1: 0.35, LidRing.FOLD: 1.0, LidRing.FOLD + 1: 0.8, LidRing.ORBIT: 0.35}
-_ENDS = 0.6  # exponent: how soon the crease is deep, from the corners of the eye on
+_SUNK = {LidRing.CREASE - 2: 0.2, LidRing.CREASE - 1: 0.65, LidRing.CREASE: 1.0, LidRing.CREASE + 1: 0.8, LidRing.FOLD: 0.35}
+_HANGING = {LidRing.FOLD: 0.6, LidRing.FOLD + 1: 1.0, LidRing.ORBIT: 0.8, LidRing.ORBIT + 1: 0.35}
+_ENDS = 0.85  # exponent: how soon the crease is deep, from the corners of the eye on
 
 _Length = Annotated[float, Field(ge=0, le=4)]
 
@@ -35,8 +35,10 @@ def fold_lids(topology: HeadTopology, points: Doubles, fold: LidFold, centre: Do
     placed = points.copy()
     for side in SIDES:
         mirrored = np.array([1.0 if side == SIDES[0] else -1.0, 1.0, 1.0])
-        for number, (upper, _) in enumerate(topology.lid_rings(side)):
-            part = np.linspace(0.0, 1.0, len(upper))
+        rings = topology.lid_rings(side)
+        first, last = points[rings[LidRing.EDGE][0]][[0, -1], 0]
+        for number, (upper, _) in enumerate(rings):
+            part = np.clip((points[upper, 0] - first) / (last - first), 0.0, 1.0)
             deep = np.sin(np.pi * part)[:, None] ** _ENDS * _DECIMETRES
             away = points[upper] - centre * mirrored
             out = away / np.linalg.norm(away, axis=1, keepdims=True)

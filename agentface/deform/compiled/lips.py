@@ -13,7 +13,7 @@ from agentface.deform.lip_surface import COLUMNS, ROWS
 from agentface.deform.lips import RED, THINNED, LipTables
 
 _CONTROLS = COLUMNS * ROWS
-_ZERO, _HALF = np.float32(0.0), np.float32(0.5)
+_ZERO, _HALF, _ONE = np.float32(0.0), np.float32(0.5), np.float32(1.0)
 _THINNED = np.array(THINNED)
 _thinning = njit(cache=True, nogil=True, error_model="numpy")(lips.thinning)
 
@@ -39,7 +39,7 @@ def contract(tables: LipTables, values: Floats, points: Floats) -> None:
     pucker, press = values[tables.parameters[0]], values[tables.parameters[1]]
     start = tables.skin_count
     left, right = points[start + RED[0], 0], points[start + ROWS * (COLUMNS // 2) + RED[0], 0]
-    thinner = _thinning(left - right, tables.width)
+    thinner = _thinning(left - right, tables.width) * max(_ZERO, _ONE - pucker - press)
     if pucker == _ZERO and press == _ZERO and thinner == _ZERO:
         return
     beyond = max(0.0, (press - tables.roll_from) / (1.0 - tables.roll_from))
