@@ -35,11 +35,11 @@ class LidRing(IntEnum):
     """The bottom of the crease above the lid."""
     FOLD = 10
     """The skin that hangs over the crease."""
-    ORBIT = 12
+    ORBIT = 11
     """Where the rim of the orbit begins."""
 
 
 LIP_RINGS = LipRing.SKIN + 1
 RINGS_BEYOND, RINGS_WITHIN = 2, 7
 """Further rings on the skin and inside the mouth that the lips count on, one column to one."""
-LID_RINGS = 14
+LID_RINGS = 13

@@ -29,5 +29,7 @@ def run(name: str, face: str | Path = DEFAULT_FACE) -> dict[str, Any]:
     if name not in BENCHES:
         raise UnknownNameError("benchmark", name, tuple(BENCHES))
     bench = import_module(f"agentface.bench.{name}").run
-    figures: dict[str, Any] = bench(model=load_model(face, asymmetry=0.0)) if "model" in signature(bench).parameters else bench()
+    figures: dict[str, Any] = (
+        bench(model=load_model(face, asymmetry=0.0)) if "model" in signature(bench).parameters else bench()
+    )
     return figures

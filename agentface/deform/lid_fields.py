@@ -15,7 +15,7 @@ from agentface.anatomy.model import HeadModel
 from agentface.anatomy.resample import ResampledModel
 from agentface.anatomy.rings import RingHalves
 from agentface.conventions import SIDES, Doubles, Indices
-from agentface.smoothstep import falloff
+from agentface.smoothstep import falloff, smoothstep
 
 _Mask: TypeAlias = npt.NDArray[np.bool_]
 _THICKNESS = 0.05  # of the eye's radius, by which a lid bulges over its edge when it is stretched
@@ -123,73 +123,102 @@ class _Slit:
         opening = np.maximum(above - below, 0.0)
         return cls(opening, turn, reach, met, met_reach, squeezed - met, squeezed_reach - met_reach)
 
+    @property
+    def profile(self) -> Doubles:
+        """0 at the corners of the eye, 1 where it is widest open."""
+        return 1.0 - (1.0 - self.opening / self.opening.max()) ** 2
+
     def moves(self) -> tuple[Doubles, Doubles, Doubles, Doubles]:
         """What the edge does: closing turn, its change when squeezed, and the same for the axial distance, as parts."""
         return self.met - self.turn, self.higher, self.met_reach / self.reach - 1.0, self.higher_reach / self.reach
+
+
+@dataclass(frozen=True, slots=True)
+class _Places:
+    """Where the N vertices lie at the lids, and how far each goes along with them.
+
+    Attributes:
+        arms: ``(N, 3)`` m, from the eye's centre.
+        is_upper: ``(N,)``, whether the upper lid is the nearer one.
+        gap: ``(N,)`` eye separations, from the edge of that lid.
+        x: ``(N,)`` m, of the nearest point of the edge.
+        hold, whole, lift: ``(N,)`` 0..1, by :class:`agentface.anatomy.lids.LidFade`.
+    """
+
+    arms: Doubles
+    is_upper: _Mask
+    gap: Doubles
+    x: Doubles
+    hold: Doubles
+    whole: Doubles
+    lift: Doubles
+
+    @classmethod
+    def of(cls, model: HeadModel, arms: Doubles, edges: tuple[_Curve, _Curve]) -> _Places:
+        """Those of a face; the vertices of the rings up to the edge belong to their own lid."""
+        file = model.eyelids
+        gaps, places = zip(*(edge.nearest(arms) for edge in edges), strict=True)
+        is_upper = gaps[0] <= gaps[1]
+        gap, x = np.minimum(*gaps) / model.landmarks.eye_separation, np.where(is_upper, *places)
+        for ring in file.rings[SIDES[0]][: file.edge_ring + 1]:
+            loop = ring.upper + ring.lower
+            is_upper[ring.upper], is_upper[ring.lower] = True, False
+            gap[loop], x[loop] = 0.0, arms[loop, 0]
+        lids = file.upper, file.lower
+        fades = ([lid.hold for lid in lids], [(lid.whole, lid.ends) for lid in lids], [(0.0, lid.lift) for lid in lids])
+        return cls(
+            arms, is_upper, gap, x, *(np.where(is_upper, *(falloff(gap, *ends) for ends in pair)) for pair in fades)
+        )
 
 
 def lid_fields(model: HeadModel) -> LidFields:
     """The fields of the left eye; a face made of another has that one's, interpolated."""
     if isinstance(model, ResampledModel):
         return _resampled(lid_fields(model.coarse), model)
-    file, unit = model.eyelids, model.landmarks.eye_separation
-    radius, rings = model.eyes.radius, model.eyelids.rings[SIDES[0]]
+    file, rings = model.eyelids, model.eyelids.rings[SIDES[0]]
     arms = model.vertices.astype(np.float64) - model.eye_centre(SIDES[0])
     edges = _curves(arms, rings[file.edge_ring])
-    gaps, places = zip(*(edge.nearest(arms) for edge in edges), strict=True)
-    is_upper = gaps[0] <= gaps[1]
-    gap, place = np.minimum(*gaps), np.where(is_upper, *places)
-    for ring in rings[: file.edge_ring + 1]:
-        loop = ring.upper + ring.lower
-        is_upper[ring.upper], is_upper[ring.lower] = True, False
-        gap[loop], place[loop] = 0.0, arms[loop, 0]
-    lids = file.upper, file.lower
-    hold, whole, lift = (
-        np.where(is_upper, *(falloff(gap / unit, *ends) for ends in pair))
-        for pair in (
-            [lid.hold for lid in lids],
-            [(lid.whole, lid.ends) for lid in lids],
-            [(0.0, lid.lift) for lid in lids],
-        )
-    )
-    slit = _Slit.at(edges, place, is_upper, file)
-    across, up = _sphincter(model, arms, 1.0 - whole)
-    profile = 1.0 - (1.0 - slit.opening / slit.opening.max()) ** 2
-    close, higher, shrink, shrink_higher = (whole * move for move in slit.moves())
-    sink = whole * _sinking(edges[0], slit, place, file.corner_sink * unit)
+    at = _Places.of(model, arms, edges)
+    slit = _Slit.at(edges, at.x, at.is_upper, file)
+    sink = at.whole * _sinking(edges[0], slit, at.x, file.corner_sink * model.landmarks.eye_separation)
+    fields = _closing(model, at, slit, sink) | _turning(model, at, slit, edges)
+    fields["across"], fields["up"] = _sphincter(model, arms, 1.0 - at.whole)
+    for name, field in fields.items():  # nearest points of an edge jump where the edge is hollow
+        fields[name] = evened(field, model.triangles, _EVENINGS, at.gap > 0.0)
+    for ring in rings[: file.edge_ring]:
+        _meet(arms, ring, file, sink, fields)
+    fields["hold"] = at.hold
+    fields["floor"] = np.minimum(file.sphere * model.eyes.radius, np.linalg.norm(arms, axis=1) - _SLACK)
+    moved = (at.hold > 0) | (at.whole * slit.opening > 1e-9) | (np.hypot(fields["across"], fields["up"]) > 1e-9)
+    moved |= fields["tighten"] + fields["tight_up"] > 1e-6
+    pick = np.flatnonzero(moved & (model.vertices[:, 0] > 1e-4) & (arms[:, 2] > -model.eyes.radius)).astype(np.int32)
+    return LidFields(pick, **{name: field[pick] for name, field in fields.items()})
+
+
+def _closing(model: HeadModel, at: _Places, slit: _Slit, sink: Doubles) -> dict[str, Doubles]:
+    """The turns and the changes of distance of a lid that closes, or is squeezed shut."""
+    file, radius = model.eyelids, model.eyes.radius
+    close, higher, shrink, shrink_higher = (at.whole * move for move in slit.moves())
     close, higher = close + sink, higher - sink  # a squeeze holds the corner up
-    flat = np.where(is_upper, profile, 0.0) * (whole * _flattening(arms, slit, place, gap / unit, radius) - shrink)
+    flat = np.where(at.is_upper, slit.profile, 0.0) * (at.whole * _flattening(at, slit, radius) - shrink)
     shrink += flat
     shrink_higher -= flat * (file.squeezed_meeting - file.meeting) / max(1.0 - file.meeting, 1e-6)
-    widen = _rise(edges, file.widest * radius) * np.where(is_upper, lift * profile, 0.0)
-    follow = lift * profile * np.where(is_upper, file.upper.pitch, file.lower.pitch)
-    tighten, tight_across, tight_up = _tightening(model, arms, gap / unit, profile, is_upper)
-    slant = np.where(is_upper, lift * _slant(file.slant, edges[0], place), 0.0)
-    moving = (close, higher, shrink, shrink_higher, widen, follow, tighten, slant, across, up, tight_across, tight_up)
-    for field in moving:  # nearest points of an edge jump where the edge is hollow
-        field[:] = evened(field, model.triangles, _EVENINGS, gap > 0.0)
-    for ring in rings[: file.edge_ring]:
-        _meet(arms, ring, file, sink, (close, higher, shrink, shrink_higher))
-    floor = np.minimum(file.sphere * radius, np.linalg.norm(arms, axis=1) - _SLACK)
-    moved = (hold > 0) | (whole * slit.opening > 1e-9) | (np.hypot(across, up) > 1e-9) | (tighten + tight_up > 1e-6)
-    pick = np.flatnonzero(moved & (model.vertices[:, 0] > 1e-4) & (arms[:, 2] > -radius)).astype(np.int32)
-    fields = (
-        hold,
-        close,
-        higher,
-        widen,
-        follow,
-        tighten,
-        slant,
-        shrink,
-        shrink_higher,
-        across,
-        up,
-        tight_across,
-        tight_up,
-        floor,
-    )
-    return LidFields(pick, *(field[pick] for field in fields))
+    return {"close": close, "meet_higher": higher, "shrink": shrink, "shrink_higher": shrink_higher}
+
+
+def _turning(model: HeadModel, at: _Places, slit: _Slit, edges: tuple[_Curve, _Curve]) -> dict[str, Doubles]:
+    """What else moves the lids: the levator, the gaze, the lower lid's own muscle and the inner brow."""
+    file = model.eyelids
+    raised = at.lift * slit.profile
+    tighten, tight_across, tight_up = _tightening(model, at, slit.profile)
+    return {
+        "widen": _rise(edges, file.widest * model.eyes.radius) * np.where(at.is_upper, raised, 0.0),
+        "follow": raised * np.where(at.is_upper, file.upper.pitch, file.lower.pitch),
+        "tighten": tighten,
+        "slant": np.where(at.is_upper, at.lift * _slant(file.slant, edges[0], at.x), 0.0),
+        "tight_across": tight_across,
+        "tight_up": tight_up,
+    }
 
 
 def _resampled(fields: LidFields, model: ResampledModel) -> LidFields:
@@ -208,11 +237,11 @@ def _curves(arms: Doubles, ring: RingHalves) -> tuple[_Curve, _Curve]:
     return _Curve.of(arms, ring.upper), _Curve.of(arms, ring.lower)
 
 
-def _flattening(arms: Doubles, slit: _Slit, place: Doubles, gap: Doubles, radius: float) -> Doubles:
+def _flattening(at: _Places, slit: _Slit, radius: float) -> Doubles:
     """The part by which the axial distance changes to put stretched skin on the sphere through the closed edge."""
-    sphere = np.hypot(slit.met_reach, place) + _THICKNESS * radius * (1.0 - falloff(gap, 0.0, _ROUNDING))
-    target = np.sqrt(np.maximum(sphere**2 - arms[:, 0] ** 2, (0.5 * radius) ** 2))
-    return target / np.maximum(np.hypot(arms[:, 1], arms[:, 2]), 0.2 * radius) - 1.0
+    sphere = np.hypot(slit.met_reach, at.x) + _THICKNESS * radius * smoothstep(0.0, _ROUNDING, at.gap)
+    target = np.sqrt(np.maximum(sphere**2 - at.arms[:, 0] ** 2, (0.5 * radius) ** 2))
+    return target / np.maximum(np.hypot(at.arms[:, 1], at.arms[:, 2]), 0.2 * radius) - 1.0
 
 
 def _rise(edges: tuple[_Curve, _Curve], height: float) -> float:
@@ -222,21 +251,16 @@ def _rise(edges: tuple[_Curve, _Curve], height: float) -> float:
     return max(0.0, math.asin(min(1.0, height / upper.reach[middle])) - upper.turn[middle])
 
 
-def _tightening(
-    model: HeadModel, arms: Doubles, gap: Doubles, profile: Doubles, is_upper: _Mask
-) -> tuple[Doubles, ...]:
-    """The turn of the lower lid at full contraction, and how far the skin below goes across and up.
-
-    ``profile`` is 0 at the corners of the eye and 1 in its middle.
-    """
-    table, unit, lower = model.eyelids.tightening, model.landmarks.eye_separation, ~is_upper
-    near = falloff(gap, table.whole, table.ends)
+def _tightening(model: HeadModel, at: _Places, profile: Doubles) -> tuple[Doubles, ...]:
+    """The turn of the lower lid at full contraction, and how far the skin below goes across and up."""
+    table, unit = model.eyelids.tightening, model.landmarks.eye_separation
+    near = falloff(at.gap, table.whole, table.ends)
     turn = math.radians(table.turn_deg) * (table.corners + (1.0 - table.corners) * np.clip(profile, 0.0, 1.0)) * near
-    x, y = (arms[:, :2] - (model.landmarks[f"lid_lower_{SIDES[0]}"] - model.eye_centre(SIDES[0]))[:2]).T / unit
+    x, y = (at.arms[:, :2] - (model.landmarks[f"lid_lower_{SIDES[0]}"] - model.eye_centre(SIDES[0]))[:2]).T / unit
     temple, nose, height = table.half_axes
     lifted = falloff(np.hypot(x / np.where(x > 0, temple, nose), y / height), 0.0, 1.0) * (1.0 - near) * unit
     across = -table.inward * np.clip(x / temple, 0.0, 1.0) * lifted
-    return tuple(np.where(lower, field, 0.0) for field in (turn, across, table.lift * lifted))
+    return tuple(np.where(at.is_upper, 0.0, field) for field in (turn, across, table.lift * lifted))
 
 
 def _slant(table: LidSlant, edge: _Curve, place: Doubles) -> Doubles:
@@ -253,13 +277,14 @@ def _sinking(edge: _Curve, slit: _Slit, place: Doubles, depth: float) -> Doubles
     return -depth / slit.met_reach * falloff((outer - place) / (outer - inner), 0.0, _CORNER)
 
 
-def _meet(arms: Doubles, ring: RingHalves, motion: LidMotion, sink: Doubles, fields: tuple[Doubles, ...]) -> None:
+def _meet(arms: Doubles, ring: RingHalves, motion: LidMotion, sink: Doubles, fields: dict[str, Doubles]) -> None:
     """Give a ring inside the edge its own line where its halves meet."""
     edges = _curves(arms, ring)
+    sunk = {"close": 1.0, "meet_higher": -1.0, "shrink": 0.0, "shrink_higher": 0.0}
     for half, upper in ((ring.upper, True), (ring.lower, False)):
         slit = _Slit.at(edges, arms[half, 0], np.full(len(half), upper), motion)
-        for field, move, share in zip(fields, slit.moves(), (1.0, -1.0, 0.0, 0.0), strict=True):
-            field[half] = move + share * sink[half]
+        for (name, share), move in zip(sunk.items(), slit.moves(), strict=True):
+            fields[name][half] = move + share * sink[half]
 
 
 def _sphincter(model: HeadModel, arms: Doubles, free: Doubles) -> tuple[Doubles, Doubles]:

@@ -121,7 +121,8 @@ def prepare(model: HeadModel) -> LipTables:
 def contract(tables: LipTables, values: Floats, points: Floats) -> None:
     """Orbicularis oris: p' = p + o (shift + pull (E(p) - p)) on the control points, E(p) the place on the ellipse.
 
-    ``shift`` is rotation and extrusion (Bui et al., section 3.2, misprint corrected: a sum of displacements). Before
+    ``shift`` is rotation and extrusion (Bui et al., section 3.2, misprint corrected: a sum of displacements). In height
+    the way to the ellipse is that of the point at rest: lips that smile stay where they are while they press. Before
     that, lips that the vector muscles have stretched are thinner. The vertices at the patch's edge and beyond follow
     the surface there. ``points (V + 144, 3)`` m are moved in place.
     """
@@ -135,7 +136,8 @@ def contract(tables: LipTables, values: Floats, points: Floats) -> None:
     moved = (-thinner * np.array(THINNED)[:, None] * away * np.array([0, 1, 1], np.float32)).reshape(-1, 3)
     for level, shift, target, pull in zip(levels, tables.shift, tables.target, tables.pull, strict=True):
         moved += level * shift
-        moved[:, :2] += level * pull[:, None] * (target - control[:, :2])
+        there = np.column_stack([control[:, 0], tables.control_rest[:, 1]])
+        moved[:, :2] += level * pull[:, None] * (target - there)
     points[tables.patch[tables.rim]] += _mixed(moved, tables.controls[tables.rim], tables.weight[tables.rim])
     points[tables.skirt] += _mixed(moved, tables.skirt_index, tables.skirt_weight)
     control += moved

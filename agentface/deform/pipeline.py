@@ -87,10 +87,10 @@ class GeometricDeformer:
 
         return {
             "muscles": lambda values: self._combiner.apply(values[self._muscles], points),
+            "volumes": lambda values: part["volumes"].apply(tables.volumes, values, points),
             "limits": lambda _: part["limits"].apply(tables.limits, points),
             "orbicularis_oris": lambda values: part["lips"].contract(tables.lips, values, points),
             "eyelids": lambda values: part["eyelids"].apply(tables.eyelids, values, points),
-            "volumes": lambda values: part["volumes"].apply(tables.volumes, values, points),
             "jaw": lambda values: part["jaw"].apply(tables.jaw, values, points),
             "lips": lambda _: part["lips"].surface(tables.lips, points),
             "contact": lambda values: part["contact"].apply(tables.contact, values, points),

@@ -15,8 +15,14 @@ if TYPE_CHECKING:
     from agentface.anatomy.build.head import HeadTopology
 
 _DECIMETRES = 0.01  # a millimetre
-_SUNK = {LidRing.CREASE - 2: 0.2, LidRing.CREASE - 1: 0.65, LidRing.CREASE: 1.0, LidRing.CREASE + 1: 0.8, LidRing.FOLD: 0.35}
-_HANGING = {LidRing.FOLD: 0.6, LidRing.FOLD + 1: 1.0, LidRing.ORBIT: 0.8, LidRing.ORBIT + 1: 0.35}
+_SUNK = {
+    LidRing.CREASE - 2: 0.2,
+    LidRing.CREASE - 1: 0.65,
+    LidRing.CREASE: 1.0,
+    LidRing.CREASE + 1: 0.8,
+    LidRing.FOLD: 0.35,
+}
+_HANGING = {LidRing.FOLD: 0.7, LidRing.ORBIT: 1.0, LidRing.ORBIT + 1: 0.4}
 _ENDS = 0.85  # exponent: how soon the crease is deep, from the corners of the eye on
 
 _Length = Annotated[float, Field(ge=0, le=4)]

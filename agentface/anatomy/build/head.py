@@ -34,7 +34,7 @@ _EVENINGS = 20
 """How often the asymmetry is evened out: lids, lips and teeth go along without being bent."""
 _EYE_WHOLE, _EYE_ENDS = 1.5, 2.6
 """Radii from an eye's centre within which all goes along with it, and beyond which nothing does."""
-_LID_SPLITS = (6, 7, 8)
+_LID_SPLITS = (6, 7)
 """Base rings of the lids behind which another one is put in: the crease above the upper lid is deep and narrow."""
 _CORNER_SPLITS = (0, 1, 2)
 """Edges of the lower lip from its corner on through which another column is put in, where the base mesh is coarse."""

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 import numpy as np
 from pydantic import Field
 
+from agentface.anatomy.evening import evened
 from agentface.config import Table
 from agentface.conventions import Doubles, Indices
 
@@ -15,6 +16,7 @@ if TYPE_CHECKING:
 
 _FINEST = 1e-4
 _INNER_RINGS = 3
+_EVENINGS = 4
 _Share = Annotated[float, Field(ge=0, le=1)]
 
 
@@ -49,8 +51,15 @@ def jaw_shares(topology: HeadTopology, points: Doubles, guide: Doubles, shares: 
     correction[fixed] = wanted[fixed] - guide[fixed]
     correction = _spread(points, topology.skin.triangles, fixed, correction, shares.fade * unit)
     found = np.clip(guide + correction, 0.0, 1.0)
+    found = evened(found, topology.skin.triangles, _EVENINGS, _under_the_chin(topology, points, unit))
     # coarser than what the solver's rounding can change, so that every machine writes the same
     return np.round(0.5 * (found + found[topology.skin.mirror]) / _FINEST) * _FINEST
+
+
+def _under_the_chin(topology: HeadTopology, points: Doubles, unit: float) -> np.typing.NDArray[np.bool_]:
+    """``(V,)`` true where an opening jaw presses the skin together, between the chin and the throat."""
+    below = points - points[topology.landmarks["menton"]["vertices"]].mean(0)
+    return np.asarray((below[:, 1] < 0.1 * unit) & (below[:, 2] < -0.3 * unit))
 
 
 def _on_the_lips(

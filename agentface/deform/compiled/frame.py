@@ -100,10 +100,10 @@ def _compile(sources: str) -> Callable[..., None]:
         for face in range(first, last):
             values = poses[face]
             _contract(tables.rest, blocks, values, scratch)
+            volumes.apply(tables.volumes, values, points)
             limits.apply(tables.limits, points)
             lips.contract(tables.lips, values, points)
             eyelids.apply(tables.eyelids, values, points)
-            volumes.apply(tables.volumes, values, points)
             jaw.apply(tables.jaw, values, points)
             lips.surface(tables.lips, points)
             contact.apply(tables.contact, values, points)

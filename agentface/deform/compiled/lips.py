@@ -48,13 +48,13 @@ def contract(tables: LipTables, values: Floats, points: Floats) -> None:
     for i in range(_CONTROLS):
         row = i % ROWS
         red, other, share = start + i - row + RED[0], start + i - row + RED[1], thinner * _THINNED[row]
-        x, y = points[start + i, 0], points[start + i, 1]
+        x, y, home = points[start + i, 0], points[start + i, 1], tables.control_rest[i, 1]
         across = pucker * (tables.shift[0, i, 0] + tables.pull[0, i] * (tables.target[0, i, 0] - x))
         across += press * (tables.shift[1, i, 0] + tables.pull[1, i] * (tables.target[1, i, 0] - x))
         across += roll * (tables.shift[2, i, 0] + tables.pull[2, i] * (tables.target[2, i, 0] - x))
-        up = pucker * (tables.shift[0, i, 1] + tables.pull[0, i] * (tables.target[0, i, 1] - y))
-        up += press * (tables.shift[1, i, 1] + tables.pull[1, i] * (tables.target[1, i, 1] - y))
-        up += roll * (tables.shift[2, i, 1] + tables.pull[2, i] * (tables.target[2, i, 1] - y))
+        up = pucker * (tables.shift[0, i, 1] + tables.pull[0, i] * (tables.target[0, i, 1] - home))
+        up += press * (tables.shift[1, i, 1] + tables.pull[1, i] * (tables.target[1, i, 1] - home))
+        up += roll * (tables.shift[2, i, 1] + tables.pull[2, i] * (tables.target[2, i, 1] - home))
         ahead = pucker * tables.shift[0, i, 2] + press * tables.shift[1, i, 2] + roll * tables.shift[2, i, 2]
         up -= share * (y - _HALF * (points[red, 1] + points[other, 1]))
         ahead -= share * (points[start + i, 2] - _HALF * (points[red, 2] + points[other, 2]))
