@@ -44,7 +44,7 @@ _PSEUDO: dict[str, str] = {
     "levator_palpebrae": "opens the upper lid past neutral (AU 5)",
     "orbicularis_oculi_palpebralis": "orbicularis oculi, pars palpebralis: closes the lids (AU 43, 45)",
     "orbicularis_oculi_orbitalis": "orbicularis oculi, pars orbitalis: squeezes the eye",
-    "orbicularis_oculi_preseptalis": "orbicularis oculi, preseptal part of pars palpebralis: tightens the lower lid (AU 7)",
+    "orbicularis_oculi_preseptalis": "orbicularis oculi, preseptal fibres: tightens the lower lid (AU 7)",
 }
 _MIDDLE: dict[str, str] = {
     "orbicularis_oris_pucker": "orbicularis oris, puckering the lips (AU 18)",

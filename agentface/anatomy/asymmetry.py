@@ -1,7 +1,7 @@
 """``asymmetry.yaml`` and the shape of the same name: how a face differs from its mirror image.
 
-The bones differ by one sparse shape, which is added when a face is loaded; its eyes, teeth and tongue go along. The muscles
-differ by gains: the part of what a rule asks for that a side makes.
+The bones differ by one sparse shape, which is added when a face is loaded; its eyes, teeth and tongue go along. The
+muscles differ by gains: the part of what a rule asks for that a side makes.
 """
 
 from __future__ import annotations

@@ -25,9 +25,8 @@ from agentface.deform.eyes import EyesTables
 from agentface.deform.lid_fields import lid_fields
 from agentface.parameters import indices_of
 
-(
-    HOLD, CLOSE, HIGHER, WIDEN, FOLLOW, TIGHTEN, SLANT, SHRINK, SHRINK_HIGHER, ACROSS, UP, TIGHT_ACROSS, TIGHT_UP, FLOOR,
-) = range(14)  # fmt: skip
+HOLD, CLOSE, HIGHER, WIDEN, FOLLOW, TIGHTEN, SLANT = range(7)
+SHRINK, SHRINK_HIGHER, ACROSS, UP, TIGHT_ACROSS, TIGHT_UP, FLOOR = range(7, 14)
 """Rows of a block of :attr:`EyelidsTables.fields`."""
 LANES = 16
 """Vertices a block: as many as the compiled loop moves at once."""

@@ -145,7 +145,7 @@ def contract(tables: LipTables, values: Floats, points: Floats) -> None:
 
 def thinning(width: np.float32, rest: float) -> np.float32:
     """The part of their height and depth that lips lose whose mouth is ``width`` m wide and ``rest`` m at rest."""
-    return np.float32(max(0.0, 1.0 - rest / max(width, rest)))
+    return np.float32(max(0.0, 1.0 - rest / max(float(width), rest)))
 
 
 def contraction_levels(tables: LipTables, values: Floats) -> Floats:

@@ -11,7 +11,7 @@ from agentface.conventions import Doubles, Floats, Indices
 
 
 def complexion(model: HeadModel, covered: Floats, stubble: float = 0.0) -> Floats:
-    """``(V, 4)`` 0..1: redness (below 0: the shadow of a shaved beard), tint of the eye socket, gloss of forehead and nose, and ``covered (V,)`` by hair."""
+    """``(V, 4)`` 0..1: redness (below 0: a shaved beard), socket, gloss, and ``covered (V,)`` by hair."""
     at = model.landmarks
     unit = at.eye_separation
     up = np.array([0, unit, 0], np.float32)

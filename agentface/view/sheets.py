@@ -1,4 +1,4 @@
-"""Long hair as sheets: smooth surfaces that run from the parting over the head, with strands, locks and tips by pixel."""
+"""Long hair as sheets: smooth surfaces that run from the parting over the head; strands and locks are by pixel."""
 
 from __future__ import annotations
 
@@ -45,8 +45,10 @@ _TUCKED = 0.3
 
 @dataclass(frozen=True, slots=True)
 class Sheet:
-    """A grid of columns of hair round the head's ``centre (3,)`` m: ``points (C, R, 3)`` m, and its ``places (C, R, 4)``:
-    across in locks, along 0..1, light that the hair above lets through, and a number of its own."""
+    """A grid of columns of hair round the head's ``centre (3,)`` m: ``points (C, R, 3)`` m and ``places (C, R, 4)``.
+
+    A place is across in locks, along 0..1, light that the hair above lets through, and a number of its own.
+    """
 
     points: Floats
     places: Floats
@@ -142,7 +144,7 @@ def _sheet(
 
 
 def _resampled(paths: Doubles, t: Doubles, share: Doubles) -> tuple[Doubles, Doubles]:
-    """``(C, R, 3)`` m and ``(C, R)`` m: the points at parts ``t`` of each path's length times ``share``; the lengths."""
+    """``(C, R, 3)`` m and ``(C, R)`` m: points at parts ``t`` of each path's length times ``share``; the lengths."""
     steps = np.linalg.norm(np.diff(paths, axis=1), axis=2)
     way = np.concatenate([np.zeros((len(paths), 1)), np.cumsum(steps, axis=1)], axis=1)
     along = way[:, -1:] * share[:, None] * t

@@ -4,6 +4,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from agentface.anatomy.model import load_model
+from agentface.anatomy.normals import vertex_normals
 from agentface.deform.pipeline import GeometricDeformer
 from agentface.parameters import FacePose
 from agentface.view import strands as strands_module
@@ -14,7 +15,6 @@ from agentface.view.grow import grow
 from agentface.view.hair import Hairline, hair_shade
 from agentface.view.hull import Hull
 from agentface.view.look import load_look
-from agentface.anatomy.normals import vertex_normals
 from agentface.view.renderer import Renderer
 from agentface.view.ribbons import roots_along, roots_in_front
 from agentface.view.visible import unhidden

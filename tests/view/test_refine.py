@@ -3,8 +3,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from agentface.view.refine import refine, unrefined
 from agentface.anatomy.normals import vertex_normals
+from agentface.view.refine import refine, unrefined
 from tests.heads import head_model
 
 OCTAHEDRON = np.array([[1, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -1, 0], [0, 0, 1], [0, 0, -1]], np.float32)

@@ -16,12 +16,12 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 from PIL import Image
 
+from agentface.anatomy.normals import vertex_normals
 from agentface.cli import cli
 from agentface.deform.geometry import FaceGeometry
 from agentface.errors import DataError
 from agentface.resources import face_folder
 from agentface.view.look import load_look, read_look
-from agentface.anatomy.normals import vertex_normals
 from agentface.view.renderer import Renderer
 from agentface.view.skin_image import bled, read_texture, skin_image
 from agentface.view.skin_template import skin_template

@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 from scipy.ndimage import binary_dilation
 
+from agentface.anatomy.normals import vertex_normals
 from agentface.anatomy.trains import heights
 from agentface.deform.geometry import FaceGeometry
 from agentface.view.camera import named_view
-from agentface.anatomy.normals import vertex_normals
 from agentface.view.reliefs import SIDE, STEEPEST
 from agentface.view.renderer import Renderer
 from tests.heads import head_model

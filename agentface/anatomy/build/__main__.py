@@ -94,8 +94,8 @@ def _write_tables(folder: Path, topology: HeadTopology, head: Head, recipe: Reci
     )
     _dump(
         folder / "volumes.yaml",
-        "Skin and flesh that muscles gather or hollow, relative to the landmarks; lengths in eye separations, one entry "
-        "a pair.",
+        "Skin and flesh that muscles gather or hollow, relative to the landmarks; lengths in eye separations, one "
+        "entry a pair.",
         {"volumes": {name: row.model_dump() for name, row in parts.volumes.items()}},
     )
     centre = [round(float(value), 6) for value in head.eye_centre]

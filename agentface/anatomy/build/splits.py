@@ -33,9 +33,8 @@ def across_rings(quads: Indices, edges: Iterable[tuple[int, int]], borders: Iter
         for side, (a, b) in enumerate(sides):
             at_edge.setdefault((a, b), []).append((quad, side))
     for first in edges:
-        key = (min(first), max(first))
-        for quad, side in at_edge[key]:
-            here = quad, side
+        for start in at_edge[min(first), max(first)]:
+            here = start
             while True:
                 quad, side = here
                 result[quad] = ACROSS if side % 2 == 0 else ALONG

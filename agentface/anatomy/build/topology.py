@@ -95,7 +95,7 @@ class Skin:
         return [[a, near, far, d], [near, b, c, far]]
 
     def middle(self, a: int, b: int) -> int:
-        """The vertex in the middle of the edge from ``a`` to ``b`` of one of the quads or of their quarters; else -1."""
+        """The vertex in the middle of the edge ``a``-``b`` of one of the quads or of their quarters; else -1."""
         ends = (min(a, b), max(a, b))
         return self.first.edge_vertex.get(ends, self.second.edge_vertex.get(ends, -1))
 
