@@ -16,6 +16,7 @@ PACKAGE = Path(agentface.__file__).parent
 LAYERS = (
     ("errors",),
     ("conventions", "resources", "config"),
+    ("smoothstep",),
     ("parameters",),
     ("anatomy",),
     ("emotion", "motion", "deform", "tissue", "mpeg4"),

@@ -91,11 +91,13 @@ def _rule_readers() -> dict[str, _Reader]:
 
 
 def _face_readers() -> dict[str, _Reader]:
+    from agentface.anatomy.asymmetry import read_asymmetry
     from agentface.anatomy.glb import read_glb
     from agentface.anatomy.model import EyesFile, JawFile
     from agentface.anatomy.muscles import read_muscles
     from agentface.anatomy.regions import load_regions
     from agentface.anatomy.rings import EyelidsFile, LipsFile, load_rings
+    from agentface.anatomy.volumes import read_volumes
     from agentface.anatomy.wrinkles import read_wrinkles
     from agentface.config import load
     from agentface.view.look import read_look
@@ -109,7 +111,9 @@ def _face_readers() -> dict[str, _Reader]:
         "eyelids.yaml": lambda path: load_rings(path, EyelidsFile, _skin_beside(path)),
         "jaw.yaml": lambda path: load(path, JawFile),
         "eyes.yaml": lambda path: load(path, EyesFile),
+        "volumes.yaml": read_volumes,
         "wrinkles.yaml": read_wrinkles,
+        "asymmetry.yaml": read_asymmetry,
         "look.yaml": read_look,
     }
 

@@ -34,10 +34,10 @@ and where they rest ``(C, 3)`` m."""
 _CORNER = 1000.0  # vertices that a corner of the lips counts for: there the paper says the share
 _PRIOR = 1e-3
 _STEPS = 1500
-_EVENINGS = 6
+_EVENINGS = 20
 _REACH = 1.1, 1.0, 0.62
 """Eye separations from the corners of the mouth aside, up and down within which skin is drawn back."""
-_TAUT = 0.6  # of what the artists' shape draws back: the rest would go through the upper teeth
+_TAUT = 0.4  # of what the artists' shape draws back: the rest would go through the upper teeth
 JAW_SHAPE = "jawOpen"
 
 

@@ -38,7 +38,7 @@ def test_unknown_faces_name_the_known_ones():
 
 
 @pytest.mark.parametrize(
-    ("old", "new", "expected"), [("[0, ", "[1, ", "no gap"), ("vertices: 5", "vertices: 6", "as in head.glb")]
+    ("old", "new", "expected"), [("[0, ", "[1, ", "no gap"), ("vertices: 6", "vertices: 7", "as in head.glb")]
 )
 def test_regions_must_cover_the_mesh(face, old, new, expected):
     edit(face / "regions.yaml", old, new)

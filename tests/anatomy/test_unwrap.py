@@ -177,9 +177,9 @@ def with_value(value):
 @pytest.mark.parametrize(
     ("change", "expected", "got"),
     [
-        (lambda uv: uv[:-1], "an array of shape (5919, 2)", "(5918, 2)"),
-        (lambda uv: np.repeat(uv, 2, axis=1), "an array of shape (5919, 2)", "(5919, 4)"),
-        (lambda uv: np.ascontiguousarray(uv[:, 0]), "an array of shape (5919, 2)", "(5919,)"),
+        (lambda uv: uv[:-1], "an array of shape (6139, 2)", "(6138, 2)"),
+        (lambda uv: np.repeat(uv, 2, axis=1), "an array of shape (6139, 2)", "(6139, 4)"),
+        (lambda uv: np.ascontiguousarray(uv[:, 0]), "an array of shape (6139, 2)", "(6139,)"),
         (with_value(np.nan), "coordinates in 0..1", "nan"),
         (with_value(np.inf), "coordinates in 0..1", "inf"),
         (with_value(1.5), "coordinates in 0..1", "1.5] at vertex 7"),

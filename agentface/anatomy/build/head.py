@@ -14,6 +14,7 @@ from agentface.anatomy.build.fold import fold_lids
 from agentface.anatomy.build.identity import Recipe, asymmetry, close_lips, person
 from agentface.anatomy.build.jaw import JawShares, jaw_shares
 from agentface.anatomy.build.partition import Loops, base_labels, find_loops, halves, order_by_region, partition, ranges
+from agentface.anatomy.build.relax import relaxed
 from agentface.anatomy.build.source import BaseMesh
 from agentface.anatomy.build.splits import WHOLE, across_rings, between_rings
 from agentface.anatomy.build.thin import Thinner
@@ -234,7 +235,7 @@ def build_head(topology: HeadTopology, recipe: Recipe, jaw_table: JawShares) -> 
     centre = np.array(
         [0.5 * (eye[:, 0].max() + eye[:, 0].min()), 0.5 * (eye[:, 1].max() + eye[:, 1].min()), eye[:, 2].min() + radius]
     )
-    points = fold_lids(topology, skin.place(base), recipe.lid_fold, centre)
+    points = relaxed(topology, fold_lids(topology, skin.place(base), recipe.lid_fold, centre))
     ear = points[topology.landmarks["ear_front_l"]["vertices"]][0]
     origin = np.array([0.0, centre[1], ear[2]])
     shapes = {name: skin.place(mesh.face_unit(name)) for name in mesh.face_units()}
