@@ -19,7 +19,7 @@ _FIRST_RING, _LAST_RING = INNER_RINGS - 1, INNER_RINGS + 5
 _FALL = (0.3, 0.65, 1, 1, 1, 1, 1, 1, 1, 0.8, 0.55, 0.32, 0.14, 0.04)  # of the way the lips are pushed, by rings
 SPREAD, STEEP = np.float32(1.07), np.float32(4.0)
 """How the push at a place between two columns is shared: enough for their mean, and continuous."""
-ROUNDS = 2
+ROUNDS = 5
 """How often pressed lips are drawn together and parted: each round leaves less of the gap."""
 PARTINGS = 3
 """How often lips are parted after the teeth have pushed them: each time takes what the last one left."""

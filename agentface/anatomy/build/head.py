@@ -255,9 +255,14 @@ def build_head(topology: HeadTopology, recipe: Recipe, jaw_table: JawShares) -> 
             {name: _sparse(offsets) for name, offsets in {**shapes, SHAPE: uneven}.items()},
         )
     }
+    strips = [
+        base[np.unique(mesh.quads[f"helper-{row}-teeth"])] * [recipe.teeth.width, 1.0, 1.0]
+        - [0.0, 0.0, 0.01 * recipe.teeth.back_mm]
+        for row in ("upper", "lower")
+    ]
     parts = {
-        "teeth_upper": mouth_parts.dental_arch(base[np.unique(mesh.quads["helper-upper-teeth"])], upper=True),
-        "teeth_lower": mouth_parts.dental_arch(base[np.unique(mesh.quads["helper-lower-teeth"])], upper=False),
+        "teeth_upper": mouth_parts.dental_arch(strips[0], upper=True),
+        "teeth_lower": mouth_parts.dental_arch(strips[1], upper=False),
         "tongue": mouth_parts.tongue(base, mesh.quads["helper-tongue"]),
         "eye_l": mouth_parts.eyeball(centre, 0.995 * radius),
         "eye_r": mouth_parts.eyeball(centre * [-1, 1, 1], 0.995 * radius),

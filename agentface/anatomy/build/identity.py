@@ -17,6 +17,13 @@ from agentface.conventions import Doubles
 Weight = Annotated[float, Field(ge=0, le=1.5)]
 
 
+class Teeth(Table):
+    """How far the person's rows of teeth stand behind the base mesh's, and how wide they are as a part of it."""
+
+    back_mm: Annotated[float, Field(ge=0, le=4)] = 0.0
+    width: Annotated[float, Field(ge=0.7, le=1.3)] = 1.0
+
+
 class Recipe(Table):
     """``recipe.yaml``: the mix of the base mesh's macro targets, detail targets and resting shapes of one face."""
 
@@ -30,6 +37,7 @@ class Recipe(Table):
     targets: dict[str, Weight]
     resting_shapes: dict[str, Weight] = {}
     lid_fold: LidFold = LidFold()
+    teeth: Teeth = Teeth()
     asymmetry: dict[str, Weight] = {}
 
 
