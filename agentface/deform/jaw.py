@@ -37,6 +37,8 @@ _STEPS = 1500
 _EVENINGS = 20
 _REACH = 1.1, 1.0, 0.62
 """Eye separations from the corners of the mouth aside, up and down within which skin is drawn back."""
+_BONE = 0.18, 0.45
+"""Eye separations from the tip of the chin within which skin lies on the bone, and beyond which it does not."""
 _TAUT = 0.4  # of what the artists' shape draws back: the rest would go through the upper teeth
 JAW_SHAPE = "jawOpen"
 
@@ -104,7 +106,9 @@ def _beside_the_mouth(model: HeadModel) -> Doubles:
     up, ahead = (model.vertices[:, 1:] - corner[1:]).T
     reach = np.where(up > 0.0, _REACH[1], _REACH[2])
     distance = np.sqrt((aside / _REACH[0]) ** 2 + (up / reach) ** 2 + (np.minimum(ahead, 0.0) / _REACH[0]) ** 2)
-    return falloff(distance / model.landmarks.eye_separation, 0.3, 1.0)
+    from_chin = np.linalg.norm(model.vertices - model.landmarks["pogonion"], axis=1)
+    unit = model.landmarks.eye_separation
+    return falloff(distance / unit, 0.3, 1.0) * (1.0 - falloff(from_chin / unit, *_BONE))
 
 
 def _spanned(model: HeadModel, prior: Doubles, surface: Surface) -> Doubles:

@@ -14,6 +14,8 @@ COLUMNS, ROWS = 24, 6
 row 0 inside the mouth, row 5 on the skin."""
 _ROUND, _ROUND_ALONG = 1.5, (0.5, 0.85)
 """Columns from a corner of the mouth over which it opens round, and where along the surface that ends."""
+_CORNER, _ROOT = 0.13, 0.65
+"""Columns within which a column of the mesh is the corner itself; the exponent of the root."""
 _STIFFNESS = 0.06  # how strongly the fit prefers an even control grid to the mesh's last tenth of a millimetre
 
 
@@ -46,8 +48,8 @@ def moved_with(across: Doubles, along: Doubles) -> Doubles:
     """
     half = COLUMNS / 2
     off = (across + 0.5 * half) % half - 0.5 * half  # from the nearer corner
-    far = np.abs(off)
-    root = _ROUND * (far / _ROUND) ** 0.65
+    far = np.maximum(np.abs(off) - _CORNER, 0.0)
+    root = _ROUND * (far / _ROUND) ** _ROOT
     near = 1.0 - smoothstep(0.0, 1.6 * _ROUND, far)
     share = 1.0 - smoothstep(*_ROUND_ALONG, along)
     return np.asarray((across + np.sign(off) * near * share * (root - far)) % COLUMNS)

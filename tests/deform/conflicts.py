@@ -19,6 +19,8 @@ UPPER_LID_RINGS, LOWER_LID_RINGS = LidRing.FOLD + 1, LidRing.PLATE + 2
 """Rings of the lids that fold: those of the lids' regions, and above the upper lid those of the crease."""
 DEPTH = 0.008
 """How far behind the surface of a tooth or an eye skin is looked for, in metres."""
+_SHARES = np.array([[1, 1, 1], [4, 1, 1], [1, 4, 1], [1, 1, 4]]) / np.array([[3], [6], [6], [6]])
+"""Of a triangle's corners in the four points that stand for it."""
 
 
 def random_poses(count: int, seed: int) -> Iterator[FacePose]:
@@ -124,7 +126,7 @@ class Poking:
 
 
 def _surface(model: HeadModel, name: str) -> tuple[np.ndarray, np.ndarray]:
-    """Points and unit normals of a part's front: crowns without gums, eyes without their back."""
+    """Points, the triangles' middles among them, and unit normals of a part's front: no gums, no eye's back."""
     part = model.parts[name]
     points = part.attributes["POSITION"].astype(np.float64)
     normals = np.zeros_like(points)
@@ -132,10 +134,15 @@ def _surface(model: HeadModel, name: str) -> tuple[np.ndarray, np.ndarray]:
     across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     for i in range(3):
         np.add.at(normals, part.triangles[:, i], across)
+    chosen = np.ones(len(points), np.bool_)
+    if name.startswith("teeth"):
+        chosen = part.attributes["_MATERIAL"][:, 0] > 0
+    inside = chosen[part.triangles].all(axis=1)
+    middles = [np.tensordot(corners[inside], share, (1, 0)) for share in _SHARES]
+    points = np.concatenate([points[chosen], *middles])
+    normals = np.concatenate([normals[chosen], *[across[inside]] * len(middles)])
     normals /= np.linalg.norm(normals, axis=1, keepdims=True)
     outside = normals[:, 2] > 0.2
-    if name.startswith("teeth"):
-        outside &= part.attributes["_MATERIAL"][:, 0] > 0
     return points[outside], normals[outside]
 
 

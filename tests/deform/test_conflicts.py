@@ -5,6 +5,7 @@ from itertools import combinations
 import numpy as np
 import pytest
 
+from agentface.anatomy.ring_names import LidRing
 from agentface.deform.pipeline import GeometricDeformer
 from agentface.emotion.inference import default_inference
 from agentface.emotion.state import EMOTIONS, EmotionState
@@ -100,11 +101,11 @@ def turned_over(face, poses):
 
 @pytest.mark.parametrize("face", FACES)
 def test_little_is_left_out_as_a_fold(face):
-    """The lips' red, the inside of the mouth and the lids with the crease above them: a sixth of the edges."""
+    """The lips' red, the inside of the mouth and the lids with the crease above them, where the mesh is finest."""
     model = head_model(face)
     edges = Edges.of(model)
-    assert 0.14 < edges.folding().mean() < 0.18
-    assert fold_vertices(model).mean() < 0.19
+    assert 0.16 < edges.folding().mean() < 0.20
+    assert fold_vertices(model).mean() < 0.21
 
 
 @pytest.mark.parametrize("face", FACES)
@@ -119,7 +120,7 @@ def test_what_has_flipped_or_come_through_is_found(face):
     geometry.vertices[cheek, 1] += 0.015
     assert (edges.flipped(geometry.vertices) & ~edges.folding()).any()
     geometry.vertices[:] = rest
-    lid = np.linalg.norm(rest - rest[model.eyelids.rings["l"][5].upper[7]], axis=1) < 0.004
+    lid = np.linalg.norm(rest - rest[model.eyelids.rings["l"][LidRing.EDGE].upper[7]], axis=1) < 0.006
     geometry.vertices[lid] -= [0, 0, 0.004]
     assert poking.count(geometry)["eye_l"] > 0
     assert poking.count(geometry)["eye_r"] == 0

@@ -10,6 +10,7 @@ from pydantic import Field
 from agentface.anatomy.evening import evened
 from agentface.config import Table
 from agentface.conventions import Doubles, Indices
+from agentface.smoothstep import falloff
 
 if TYPE_CHECKING:
     from agentface.anatomy.build.head import HeadTopology
@@ -17,6 +18,8 @@ if TYPE_CHECKING:
 _FINEST = 1e-4
 _INNER_RINGS = 3
 _EVENINGS = 4
+_BONE = 0.18, 0.4
+"""Eye separations from the tip of the chin within which skin lies on the bone, and beyond which it does not."""
 _Share = Annotated[float, Field(ge=0, le=1)]
 
 
@@ -51,6 +54,8 @@ def jaw_shares(topology: HeadTopology, points: Doubles, guide: Doubles, shares: 
     correction[fixed] = wanted[fixed] - guide[fixed]
     correction = _spread(points, topology.skin.triangles, fixed, correction, shares.fade * unit)
     found = np.clip(guide + correction, 0.0, 1.0)
+    from_chin = np.linalg.norm(points - points[topology.landmarks["pogonion"]["vertices"]].mean(0), axis=1)
+    found += falloff(from_chin / unit, *_BONE) * (1.0 - found)
     found = evened(found, topology.skin.triangles, _EVENINGS, _under_the_chin(topology, points, unit))
     # coarser than what the solver's rounding can change, so that every machine writes the same
     return np.round(0.5 * (found + found[topology.skin.mirror]) / _FINEST) * _FINEST
