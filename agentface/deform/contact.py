@@ -25,6 +25,8 @@ PARTINGS = 3
 """How often lips are parted after the teeth have pushed them: each time takes what the last one left."""
 FARTHEST = np.float32(0.001)
 """m, the gap that press still closes; one twice as wide it leaves."""
+CORNER = np.float32(0.002)
+"""m from a ring's ends over which the push sets in: there its columns may run back and forth."""
 _ARCH_KEPT = 0.3  # of its distance at rest that a vertex keeps from the teeth
 _SOFTEST = 0.0012  # m, over which the teeth begin to push
 _ROUNDING = 2e-7  # m
@@ -155,8 +157,9 @@ def _part_lips(tables: ContactTables, points: Floats) -> None:
         (tables.lower, tables.upper, tables.overlap_lower, -1.0, down, up),
     )
     for own, other, at_rest, sign, own_push, other_push in lips:
-        overlap, second, part = _overlaps(tables.grid, own, other, sign, points)
+        overlap, second, part, inside = _overlaps(tables.grid, own, other, sign, points)
         push = np.float32(0.5) * np.maximum(overlap - at_rest, np.float32(0.0))
+        push *= np.clip(inside / CORNER, np.float32(0.0), np.float32(1.0))
         push[..., [0, -1]] = 0.0
         np.maximum.at(own_push, np.broadcast_to(own, push.shape), push)
         for neighbour, share in ((second - 1, 1 - part), (second, part)):
@@ -171,11 +174,12 @@ def _part_lips(tables: ContactTables, points: Floats) -> None:
 
 def _overlaps(
     grid: Indices, own: Indices, other: Indices, sign: float, points: _Points
-) -> tuple[_Points, npt.NDArray[np.int64], _Points]:
+) -> tuple[_Points, npt.NDArray[np.int64], _Points, _Points]:
     """How far each vertex of ``own`` columns is beyond each ring of the other lip at its x, ``(rings, others, K)`` m.
 
-    Also which of the ``other`` columns is the second of the two that it lies between, and how far towards it, 0..1.
-    Beyond a ring's end the overlap counts for less by as much. ``sign`` is 1 for the upper lip, else -1.
+    Also which of the ``other`` columns is the second of the two that it lies between, how far towards it, 0..1, and how
+    far inside the ring's ends. Beyond them the overlap counts for less by as much. ``sign`` is 1 for the upper lip, else
+    -1.
     """
     rings = grid[_FIRST_RING : _LAST_RING + 1]
     at, height = np.moveaxis(points[rings[:, None, own], :2], -1, 0)
@@ -185,8 +189,8 @@ def _overlaps(
     first, last = across[ring, second - 1], across[ring, second]
     part = np.clip((first - at) / np.maximum(first - last, np.float32(1e-6)), np.float32(0.0), np.float32(1.0))
     there = up[ring, second - 1] + part * (up[ring, second] - up[ring, second - 1])
-    beyond = np.maximum(np.maximum(at - across[:, :1], across[:, -1:] - at), np.float32(0.0))
-    return np.float32(sign) * (there - height) - beyond, second, part
+    inside = -np.maximum(at - across[:, :1], across[:, -1:] - at)
+    return np.float32(sign) * (there - height) - np.maximum(-inside, np.float32(0.0)), second, part, inside
 
 
 def _push_out(tables: ContactTables, arch: int, places: Floats) -> Floats:

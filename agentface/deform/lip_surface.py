@@ -14,9 +14,9 @@ COLUMNS, ROWS = 24, 6
 row 0 inside the mouth, row 5 on the skin."""
 _ROUND, _ROUND_ALONG = 1.5, (0.5, 0.85)
 """Columns from a corner of the mouth over which it opens round, and where along the surface that ends."""
-_CORNER, _ROOT = 0.13, 0.65
-"""Columns within which a column of the mesh is the corner itself; the exponent of the root."""
-_STIFFNESS = 0.06  # how strongly the fit prefers an even control grid to the mesh's last tenth of a millimetre
+_CORNER, _ROOT = 0.4, 0.65
+"""Columns round a corner that move as the surface does; the exponent of the root."""
+_STIFFNESS = 0.045  # how strongly the fit prefers an even control grid to the mesh's last tenth of a millimetre
 
 
 def weights(across: Doubles, along: Doubles) -> tuple[Indices, Doubles]:

@@ -9,7 +9,7 @@ import numpy as np
 from numba import njit
 
 from agentface.conventions import Floats, Indices
-from agentface.deform.contact import FARTHEST, PARTINGS, ROUNDS, SPREAD, STEEP, ContactTables
+from agentface.deform.contact import CORNER, FARTHEST, PARTINGS, ROUNDS, SPREAD, STEEP, ContactTables
 
 _ZERO, _QUARTER, _HALF, _ONE = np.float32(0.0), np.float32(0.25), np.float32(0.5), np.float32(1.0)
 _TWO, _THREE, _FOUR, _CLOSEST = np.float32(2.0), np.float32(3.0), np.float32(4.0), np.float32(1e-6)
@@ -130,9 +130,9 @@ def _push_apart(
         for k in range(1, own.shape[0] - 1):
             vertex = tables.grid[ring, own[k]]
             for facing in range(across.shape[0]):
-                overlap, second, part = _overlap(across[facing], up[facing], points[vertex], sign)
-                push = _HALF * (overlap - at_rest[k])
-                if push <= _ZERO:
+                overlap, second, part, inside = _overlap(across[facing], up[facing], points[vertex], sign)
+                push = _HALF * (overlap - at_rest[k]) * min(_ONE, inside / CORNER)
+                if push <= _ZERO or inside <= _ZERO:
                     continue
                 touched = True
                 a, b = other[second - 1], other[second]
@@ -165,5 +165,5 @@ def _overlap(across: Floats, up: Floats, place: Floats, sign: np.float32) -> Any
     one, other = across[second - 1], across[second]
     part = min(_ONE, max(_ZERO, (one - x) / max(one - other, _CLOSEST)))
     there = up[second - 1] + part * (up[second] - up[second - 1])
-    beyond = max(x - across[0], across[last] - x, _ZERO)
-    return sign * (there - place[1]) - beyond, second, part
+    inside = -max(x - across[0], across[last] - x)
+    return sign * (there - place[1]) - max(-inside, _ZERO), second, part, inside
