@@ -110,7 +110,7 @@ NUMBERS = [
     ("jaw.yaml", r"pivot: \[0.0,", "pivot: [0.3,", "pivot"),
     ("jaw.yaml", r"pivot: \[0.0, -[\d.]+", "pivot: [0.0, -4.7", "pivot.1"),
     ("volumes.yaml", r"radii: \[[\d.]+,", "radii: [0.0,", "volumes.cheek_apple.radii.0"),
-    ("volumes.yaml", r"muscles: {zygomaticus_major", "muscles: {zygomaticus_minus", "volumes.cheek_apple.muscles"),
+    ("volumes.yaml", r"muscles: {zygomaticus_major", "muscles: {zygomaticus_minus", "volumes.cheek_apple.muscles.zygomaticus_minus"),
     ("asymmetry.yaml", r"zygomaticus_major_r: [\d.]+", "zygomaticus_major_r: -1", "gains.zygomaticus_major_r"),
     ("asymmetry.yaml", r"zygomaticus_major_r", "zygomaticus_major", "gains.zygomaticus_major"),
     ("wrinkles.yaml", r"facing: \[0.0, 0.0, 1.0\]", "facing: [0.0, 0.0, 1e300]", "facing.2"),
@@ -139,7 +139,7 @@ def test_a_train_of_no_length_between_landmarks_is_told_by_line(face):
     new = re.sub(r"end:\n +at: glabella\n +offset: .*", "end:\n      at: subnasale", new)
     (face / "wrinkles.yaml").write_text(text.replace(row, new))
     (found,) = faults(face)
-    line = line_of(face, "wrinkles.yaml", "at: subnasale") - 1
+    line = text.replace(row, new).count("\n", 0, text.replace(row, new).index("at: subnasale"))
     assert found.startswith(f"{face / 'wrinkles.yaml'}:{line}: trains.forehead_medial.end: expected a point beside")
 
 

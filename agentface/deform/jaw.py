@@ -21,6 +21,7 @@ import numpy as np
 
 from agentface.anatomy.evening import evened
 from agentface.anatomy.model import HeadModel
+from agentface.anatomy.resample import ResampledModel
 from agentface.conventions import Doubles, Floats, Indices
 from agentface.deform.lip_surface import mirrored_controls
 from agentface.parameters import indices_of
@@ -88,6 +89,8 @@ def prepare(model: HeadModel, follow: Follow | None = None, surface: Surface | N
 
 def _drawn(model: HeadModel) -> Doubles:
     """``(V, 2)`` m along x and z: what the artists' jawOpen has beyond the turn, evened out; 0 without that shape."""
+    if isinstance(model, ResampledModel):
+        return np.asarray(_drawn(model.coarse)[model.parents].mean(axis=1))
     if JAW_SHAPE not in model.shapes:
         return np.zeros((len(model.vertices), 2))
     rest = model.vertices.astype(np.float64)

@@ -42,6 +42,7 @@ GROUPS: dict[str, tuple[str, ...]] = {
     ),
     "Eyes": (
         "levator_palpebrae",
+        "orbicularis_oculi_preseptalis",
         "orbicularis_oculi_palpebralis",
         "orbicularis_oculi_orbitalis",
     ),

@@ -91,6 +91,7 @@ def test_every_shader_compiles(context):
         "eye": ["eye"],
         "anchored": ["part"],
         "cap": ["cap"],
+        "sheet": ["sheet"],
         "screen": ["background", "copy"],
     }
     folder = data_folder("shaders")
