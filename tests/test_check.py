@@ -110,7 +110,12 @@ NUMBERS = [
     ("jaw.yaml", r"pivot: \[0.0,", "pivot: [0.3,", "pivot"),
     ("jaw.yaml", r"pivot: \[0.0, -[\d.]+", "pivot: [0.0, -4.7", "pivot.1"),
     ("volumes.yaml", r"radii: \[[\d.]+,", "radii: [0.0,", "volumes.cheek_apple.radii.0"),
-    ("volumes.yaml", r"muscles: {zygomaticus_major", "muscles: {zygomaticus_minus", "volumes.cheek_apple.muscles.zygomaticus_minus"),
+    (
+        "volumes.yaml",
+        r"muscles: {zygomaticus_major",
+        "muscles: {zygomaticus_minus",
+        "volumes.cheek_apple.muscles.zygomaticus_minus",
+    ),
     ("asymmetry.yaml", r"zygomaticus_major_r: [\d.]+", "zygomaticus_major_r: -1", "gains.zygomaticus_major_r"),
     ("asymmetry.yaml", r"zygomaticus_major_r", "zygomaticus_major", "gains.zygomaticus_major"),
     ("wrinkles.yaml", r"facing: \[0.0, 0.0, 1.0\]", "facing: [0.0, 0.0, 1e300]", "facing.2"),

@@ -177,9 +177,9 @@ def _overlaps(
 ) -> tuple[_Points, npt.NDArray[np.int64], _Points, _Points]:
     """How far each vertex of ``own`` columns is beyond each ring of the other lip at its x, ``(rings, others, K)`` m.
 
-    Also which of the ``other`` columns is the second of the two that it lies between, how far towards it, 0..1, and how
-    far inside the ring's ends. Beyond them the overlap counts for less by as much. ``sign`` is 1 for the upper lip, else
-    -1.
+    Also which of the ``other`` columns is the second of the two that it lies between, how far towards it, 0..1, and
+    how far inside the ring's ends. Beyond them the overlap counts for less by as much. ``sign`` is 1 for the upper
+    lip, else -1.
     """
     rings = grid[_FIRST_RING : _LAST_RING + 1]
     at, height = np.moveaxis(points[rings[:, None, own], :2], -1, 0)

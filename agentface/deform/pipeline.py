@@ -42,10 +42,10 @@ class Deformer(Protocol):
 class GeometricDeformer:
     """The muscle-based face of Bui, Heylen and Nijholt.
 
-    The vector muscles move the skin and the control points of the lips, combined as ``combine`` says, volumes gather,
-    as far as each region allows; then orbicularis oris, the lids, and the jaw, which carries all that along; then the lips' surface
-    takes its vertices, lips and teeth are kept apart, no skin turns over, and the wrinkles rise. ``compiled=False``
-    takes the numpy forms, the same to 1e-6 m: ready at once, slow a frame.
+    The vector muscles move the skin and the control points of the lips, combined as ``combine`` says, and gather
+    volumes, as far as each region allows; then orbicularis oris, the lids, and the jaw, which carries all that along;
+    then the lips' surface takes its vertices, lips and teeth are kept apart, no skin turns over, and the wrinkles
+    rise. ``compiled=False`` takes the numpy forms, the same to 1e-6 m: ready at once, slow a frame.
     """
 
     def __init__(self, model: HeadModel, combine: Method = "parallel", *, compiled: bool = True) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import zlib
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -12,6 +13,7 @@ from agentface.anatomy.model import HeadModel
 from agentface.anatomy.trains import relief
 from agentface.anatomy.wrinkles import PlacedTrain
 from agentface.conventions import Doubles, Floats, Indices
+from agentface.smoothstep import smoothstep
 from agentface.view.context import compile_program
 
 Relief = npt.NDArray[np.int16]
@@ -22,7 +24,8 @@ STEEPEST = 2.0
 _AZIMUTH = 1.35  # rad, to both sides of the middle: ATLAS_AZIMUTH of shaders/atlas.glsl
 _LOWEST = 2e-6  # m
 _SOFTENINGS = 2  # of a relief, by a texel each
-_BROKEN = 0.5  # how much lower rows of lines are here and there; a single fold by a third of that
+_LOST, _LOST_OF_A_FOLD = 0.5, 0.17  # how much lower the lines of a row are here and there, and a single fold
+_PLACES = 16, 32  # texels high and wide: places where lines are deep or not
 _CREASE_SHADE = 0.5  # of the light that the bottom of a crease misses: CREASE_SHADE there
 _GAMMA = 0.48  # from light to the picture, about
 _FAR_ROUND = 2.2  # rad; triangles beyond would cross the atlas where the azimuth jumps
@@ -63,16 +66,11 @@ class Patch:
         texels = np.concatenate([self.slopes, np.stack([self.creases, change], axis=2)], axis=2)
         return np.asarray(np.round(127.0 * texels), np.int16)
 
-    def broken(self, field: Floats, strength: float) -> Patch:
-        """As irregular as skin: lower where ``field (S, S)`` is low."""
-        part = np.clip(field[self.rows, self.columns], 0.0, 1.0)
-        kept = np.float32(1 - strength) + np.float32(strength) * part * part * (3 - 2 * part)
-        return replace(
-            self,
-            heights=self.heights * kept,
-            slopes=self.slopes * np.sqrt(kept)[..., None],
-            creases=self.creases * kept,
-        )
+    def broken(self, kept: Floats) -> Patch:
+        """As irregular as skin: of its height what ``kept (S, S)`` says."""
+        here = kept[self.rows, self.columns]
+        slopes = self.slopes * np.sqrt(here)[..., None]
+        return replace(self, heights=self.heights * here, slopes=slopes, creases=self.creases * here)
 
     def shade(self, towards: Doubles) -> Floats:
         """``(h, w)``: by how much its slopes change wrapped light from a direction, as a part of that light."""
@@ -127,17 +125,23 @@ def patches(context: Any, model: HeadModel, height: tuple[float, float]) -> list
         kept = raised[:, 0] > _LOWEST
         at = near[kept]
         spread.append(_patch(covered[at], raised[kept], np.hypot(points[at, 0], points[at, 2]), normals[at], height))
-    field = _patchy()
-    strengths = [_BROKEN if placed.train.count > 1 else _BROKEN / 3 for placed in model.trains]
-    return [patch.broken(field, strength) for patch, strength in zip(spread, strengths, strict=True)]
+    deep = deep_places(model.name)
+    return [patch.broken(depth_left(placed, deep)) for patch, placed in zip(spread, model.trains, strict=True)]
 
 
-def _patchy() -> Floats:
-    """``(S, S)`` 0..1: where lines are deep; the left half is not the right one's image."""
-    coarse = np.random.default_rng(7).uniform(0.0, 1.0, (SIDE // 16 + 1, SIDE // 32 + 1))
-    at = np.arange(SIDE)
-    wide = np.array([np.interp(at, np.arange(coarse.shape[1]) * 32, row) for row in coarse])
-    return np.array([np.interp(at, np.arange(coarse.shape[0]) * 16, column) for column in wide.T]).T.astype(np.float32)
+def depth_left(placed: PlacedTrain, deep: Floats) -> Floats:
+    """``(S, S)`` 0..1: the part of a train's height that is left where lines are ``deep (S, S)`` and where not."""
+    lost = _LOST if placed.train.count > 1 else _LOST_OF_A_FOLD
+    return np.asarray(1.0 - lost * (1.0 - deep), np.float32)
+
+
+def deep_places(name: str) -> Floats:
+    """``(S, S)`` 0..1: where the lines of the face ``name`` are deep; its left half is not the right one's image."""
+    rows, columns = (SIDE // size + 1 for size in _PLACES)
+    coarse = np.random.default_rng(zlib.crc32(name.encode())).uniform(size=(rows, columns))
+    row, column = (np.arange(SIDE) / size for size in _PLACES)
+    wide = np.stack([np.interp(column, np.arange(columns), line) for line in coarse])
+    return smoothstep(0.0, 1.0, np.stack([np.interp(row, np.arange(rows), line) for line in wide.T], axis=1))
 
 
 def _touched(model: HeadModel, placed: PlacedTrain) -> npt.NDArray[np.bool_]:

@@ -174,7 +174,7 @@ def test_compiled_and_plain_are_the_same(opening):
 
 
 def test_the_lips_on_the_screen_turn_by_the_papers_shares(face, monkeypatch):
-    """After the lips' surface, and not only the shares that the mesh has; the turn alone: no flesh that is drawn back."""
+    """After the lips' surface, and not only the shares that the mesh has; the turn alone, with nothing drawn back."""
     monkeypatch.setattr(jaw, "_TAUT", 0.0)
     model = replace(FACES[face])  # another one, whose tables are made anew
     deformer = GeometricDeformer(model, compiled=False)

@@ -8,7 +8,7 @@ from agentface.anatomy.normals import vertex_normals
 from agentface.anatomy.trains import heights
 from agentface.deform.geometry import FaceGeometry
 from agentface.view.camera import named_view
-from agentface.view.reliefs import SIDE, STEEPEST
+from agentface.view.reliefs import SIDE, STEEPEST, deep_places, depth_left
 from agentface.view.renderer import Renderer
 from tests.heads import head_model
 
@@ -58,8 +58,20 @@ def test_the_atlas_holds_the_heights_of_the_skin(renderer, name):
     column, row, shown = places(model, renderer._wrinkles)
     shown &= expected > 0.3 * placed.train.height
     assert shown.sum() > 5
-    gap = np.abs(texels[row[shown], column[shown]] - expected[shown])
+    left = depth_left(placed, deep_places(model.name))[row[shown], column[shown]]
+    gap = np.abs(texels[row[shown], column[shown]] - left * expected[shown])
     assert np.median(gap) < 0.1 * placed.train.height
+
+
+def test_lines_are_broken_and_not_the_same_on_two_people():
+    amber, onyx = (deep_places(name) for name in ("amber", "onyx"))
+    np.testing.assert_array_equal(amber, deep_places("amber"))
+    for one, other in ((amber, onyx), (amber, amber[:, ::-1])):
+        assert abs(np.corrcoef(one.ravel(), other.ravel())[0, 1]) < 0.2
+    for field in (amber, onyx):
+        assert field.min() < 0.1
+        assert field.max() > 0.9
+        assert np.abs(np.diff(field, axis=0)).max() < 0.12, "no edges"
 
 
 def test_no_train_ends_in_a_step(renderer):
@@ -70,10 +82,15 @@ def test_no_train_ends_in_a_step(renderer):
         assert all(column.max() <= most for column in inner), placed.name
 
 
-def test_one_side_of_the_atlas_is_the_others_mirror_image(renderer):
-    left, right = (spread(renderer, **{f"nasolabial_smile_{side}": 0.7, "chin": 0.2}) for side in "lr")
-    assert left.max() > 0.5e-3
-    np.testing.assert_allclose(left, right[:, ::-1], atol=2e-5)
+def test_one_side_of_the_atlas_is_the_others_mirror_image_but_for_what_is_broken(renderer):
+    model = renderer.model
+    (left, right), deep = (
+        (spread(renderer, **{f"nasolabial_smile_{side}": 0.7}) for side in "lr"),
+        deep_places(model.name),
+    )
+    part = depth_left(next(placed for placed in model.trains if placed.name == "nasolabial_smile_l"), deep)
+    assert left.max() > 0.4e-3
+    np.testing.assert_allclose(left / part, (right / part)[:, ::-1], atol=2e-5)
 
 
 def test_the_highest_train_stands_and_the_last_frame_is_forgotten(renderer):
@@ -102,7 +119,7 @@ def test_a_slope_towards_the_key_light_is_brighter(renderer):
     for placed, patch in zip(renderer.model.trains, renderer._wrinkles.patches, strict=True):
         if placed.name.startswith("forehead"):
             shade, rise = patch.shade(up), patch.slopes[..., 1]
-            assert shade[rise < -0.2].max() > 0 > shade[rise > 0.2].min()
+            assert shade[rise < -0.1].max() > 0 > shade[rise > 0.1].min()
             assert (shade * rise <= 1e-3).mean() > 0.9
 
 
