@@ -8,6 +8,7 @@ import numpy as np
 
 from agentface.anatomy.model import HeadModel
 from agentface.conventions import Doubles, Floats
+from agentface.smoothstep import smoothstep
 from agentface.view.hull import spread_over
 from agentface.view.look import HairLook
 from agentface.view.ribbons import unit_rows
@@ -16,8 +17,8 @@ from agentface.view.ribbons import unit_rows
 # in distances between the pupils.
 _AZIMUTH_DEG = (0, 12, 24, 32, 38, 43, 47, 51, 55, 59, 63, 67, 72, 84, 90, 97, 105, 118, 150, 180)
 _HEIGHT = (
-    1.0, 0.992, 0.955, 0.885, 0.79, 0.65, 0.48, 0.24, -0.06, -0.28,
-    -0.36, -0.36, -0.36, -0.36, -0.40, -0.56, -0.85, -1.05, -1.18, -1.22,
+    1.0, 0.992, 0.955, 0.885, 0.79, 0.65, 0.48, 0.24, -0.12, -0.4,
+    -0.45, -0.36, -0.36, -0.36, -0.40, -0.56, -0.85, -1.05, -1.18, -1.22,
 )  # fmt: skip
 _AXIS_Z = -0.69
 _SOFT = 0.006
@@ -27,6 +28,16 @@ _SHADE_REACH = 0.007
 """Metres in which the shade of hair falls to a third."""
 _STRIP = 0.012
 """Metres behind the hairline where single hairs are seen."""
+
+
+_WANDERING = ((0.0018, 130.0, 0.0, 1.0), (0.0012, 310.0, 60.0, 0.0), (0.0008, 720.0, 0.0, 2.0))
+"""Waves of the hairline: metres up and down, radians a metre to the left and ahead, where each starts."""
+
+
+_EAR = 0.28, 0.42
+"""How far an ear keeps hair away ahead and behind, in eye separations: before it grow sideburns."""
+_BARE = 0.02
+"""Metres by which the skin of an ear counts as before the hairline."""
 
 
 class Hairline:
@@ -47,13 +58,13 @@ class Hairline:
         # the forehead's part is fixed by the landmark, the rest by the size of the face
         above = points[:, 1] - np.where(height > 0, height * self.top, height * self.unit)
         y, z = points[:, 1] / self.unit + 0.40, points[:, 2] / self.unit + 0.24
-        off_ear = (np.hypot(y / 0.54, (z + 0.25 * y) / 0.40) - 1) * 0.42 * self.unit
-        # a hairline is not a line
-        return np.asarray(np.minimum(above, off_ear)) + _uneven(points)
+        ahead = z + 0.25 * y
+        off_ear = (np.hypot(y / 0.54, ahead / np.where(ahead > 0.0, *_EAR)) - 1) * 0.42 * self.unit
+        return np.asarray(np.minimum(above + _uneven(points), off_ear))
 
     def over(self, model: HeadModel) -> Doubles:
         """``(V,)`` metres behind the hairline for the vertices of the skin."""
-        return self.behind(model.vertices)
+        return self.behind(model.vertices) - _bare(model.material[:, 3])
 
 
 @dataclass(frozen=True, slots=True)
@@ -85,7 +96,7 @@ class HairRoots:
         drawn, weights = spread_over(model.vertices, triangles, round(3 * count / max(elsewhere, 0.3)), rng)
         corners = triangles[drawn]
         places = (model.vertices[corners] * weights[..., None]).sum(1)
-        depth = line.behind(places)
+        depth = line.behind(places) - _bare((model.material[corners, 3] * weights).sum(1))
         depth += 0.0020 * _wave(places * 190.0) + 0.0012 * _wave(places * 520.0)
         grown = (depth > _SOFT * (rng.random(len(depth)) ** 1.5 - 0.35)) & (depth >= behind)
         grown &= (depth < _STRIP) | (rng.random(len(depth)) < elsewhere)
@@ -118,12 +129,15 @@ def hair_shade(model: HeadModel, look: HairLook) -> Doubles:
     return np.asarray(np.maximum(thick * np.exp(-before / _SHADE_REACH), 0.5 * hidden(model, line, look)))
 
 
+def _bare(ear: Floats | Doubles) -> Doubles:
+    """``(N,)`` m: by how much what is ``ear (N,)``, 0..1, counts as before the hairline."""
+    return _BARE * smoothstep(0.9, 1.0, ear)
+
+
 def _uneven(points: Floats | Doubles) -> Doubles:
-    """``(N,)`` m: how far a hairline wanders; not the same on both sides."""
+    """``(N,)`` m: how far a hairline wanders, which is no line; not the same on both sides."""
     x, z = points[:, 0], points[:, 2]
-    return np.asarray(
-        0.0018 * np.sin(130.0 * x + 1.0) + 0.0012 * np.sin(310.0 * x + 60.0 * z) + 0.0008 * np.sin(720.0 * x + 2.0)
-    )
+    return np.asarray(sum(far * np.sin(turns * x + aside * z + start) for far, turns, aside, start in _WANDERING))
 
 
 def _wave(points: Doubles) -> Doubles:

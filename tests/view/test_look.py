@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import shutil
 
 import numpy as np
@@ -49,15 +50,16 @@ def test_there_are_looks_of_other_skin_and_hair():
 
 
 def test_every_look_is_drawn_and_shows_its_skin(context):
-    seen = {}
+    seen: dict[str, dict[float, float]] = {}
     for face, name in LOOKS:
         look = load_look(load_model(face), name)
         forehead = drawn(face, name, context)[48:56, 75:85].reshape(-1, 3).mean(0)
         light = (forehead / 255) ** 2.2 / look.exposure
         assert light[0] > light[1] > light[2]
-        seen[look.skin.tone[0]] = light[0]
-    # the lighter the tone, the lighter the picture
-    assert sorted(seen) == sorted(seen, key=lambda tone: seen[tone])
+        seen.setdefault(face, {})[look.skin.tone[0]] = light[0]
+    for tones in seen.values():  # under the same lights, the lighter the tone, the lighter the picture
+        assert len(tones) > 1
+        assert sorted(tones) == sorted(tones, key=lambda tone: tones[tone])
 
 
 def test_looks_by_name_and_path_are_the_same(tmp_path):
@@ -96,7 +98,7 @@ def test_all_faults_of_a_look_are_told_together(tmp_path):
 def test_a_light_needs_a_direction(tmp_path):
     file = tmp_path / "look.yaml"
     text = (face_folder("onyx") / "look.yaml").read_text()
-    file.write_text(text.replace("towards: [-0.62, 0.62, 0.80]", "towards: [0.0, 0.0, 0.0]"))
+    file.write_text(re.sub(r"towards: \[.*?\]", "towards: [0.0, 0.0, 0.0]", text, count=1))
     with pytest.raises(DataError, match=r"lights\.key\.towards"):
         read_look(file)
 
