@@ -24,7 +24,11 @@ class Mouth:
         self._parts = {name: _part(context, program, model, name) for name in ("teeth_upper", "teeth_lower", "tongue")}
         ring = model.lips.rings[LipRing.LINING]
         self._corners = ring.upper[0], ring.upper[-1]
-        self._lips = [half[len(half) // 2 - 2 : len(half) // 2 + 3] for half in (ring.upper, ring.lower)]
+        touching = model.lips.rings[: LipRing.RED + 1]
+        self._upper, self._lower = (
+            np.array([half[len(half) // 2 - 2 : len(half) // 2 + 3] for half in halves])
+            for halves in ([ring.upper for ring in touching], [ring.lower for ring in touching])
+        )
 
     def draw(self, geometry: FaceGeometry) -> None:
         """Draw it as ``geometry`` has it."""
@@ -43,20 +47,24 @@ class Mouth:
     def opening(self, geometry: FaceGeometry) -> dict[str, object]:
         """The uniforms of ``shaders/mouth.glsl``."""
         vertices = geometry.vertices
-        upper, lower = (vertices[ring] for ring in self._lips)
+        upper, lower = self._edges(vertices)
         half = 0.5 * float(vertices[self._corners[0], 0] - vertices[self._corners[1], 0])
-        front = 0.5 * float(upper[:, 2].mean() + lower[:, 2].mean())
+        front = 0.5 * float(vertices[self._upper[0], 2].mean() + vertices[self._lower[0], 2].mean())
         corner = vertices[list(self._corners), 1:].mean(0)
-        middle = 0.5 * float(upper[:, 1].mean() + lower[:, 1].mean())
         return {
             "mouth_light": self.light(geometry),
-            "mouth_opening": (float(upper[:, 1].mean()), float(lower[:, 1].mean()), abs(half), front),
-            "mouth_bow": (front - float(corner[1]), float(corner[0]) - middle),
+            "mouth_opening": (upper, lower, abs(half), front),
+            "mouth_bow": (front - float(corner[1]), float(corner[0]) - 0.5 * (upper + lower)),
         }
 
+    def _edges(self, vertices: Floats) -> tuple[float, float]:
+        """Heights of the lips' edges in the middle, m: of the rings that may touch, where least light comes through."""
+        upper, lower = (vertices[rings, 1].mean(axis=1) for rings in (self._upper, self._lower))
+        return float(upper.min()), float(lower.max())
+
     def _lip_gap(self, vertices: Floats) -> float:
-        upper, lower = (vertices[ring, 1] for ring in self._lips)
-        return float(upper.mean() - lower.mean())
+        upper, lower = self._edges(vertices)
+        return upper - lower
 
 
 def _part(context: Any, program: Any, model: HeadModel, name: str) -> RigidPart:
