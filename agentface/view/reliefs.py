@@ -141,7 +141,9 @@ def deep_places(name: str) -> Floats:
     coarse = np.random.default_rng(zlib.crc32(name.encode())).uniform(size=(rows, columns))
     row, column = (np.arange(SIDE) / size for size in _PLACES)
     wide = np.stack([np.interp(column, np.arange(columns), line) for line in coarse])
-    return smoothstep(0.0, 1.0, np.stack([np.interp(row, np.arange(rows), line) for line in wide.T], axis=1))
+    return np.asarray(
+        smoothstep(0.0, 1.0, np.stack([np.interp(row, np.arange(rows), line) for line in wide.T], axis=1)), np.float32
+    )
 
 
 def _touched(model: HeadModel, placed: PlacedTrain) -> npt.NDArray[np.bool_]:

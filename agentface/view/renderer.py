@@ -13,7 +13,7 @@ from agentface.view import pores
 from agentface.view.anchored import AnchoredArray, eye_linings
 from agentface.view.brows import BrowLine, brow_hairs, lash_hairs
 from agentface.view.camera import Camera, named_view
-from agentface.view.complexion import complexion, corner_pockets, lid_creases
+from agentface.view.complexion import complexion, folds
 from agentface.view.context import Witness, make_current, open_context, shader_names
 from agentface.view.frame import pack_frame, pixels_a_metre, shadow_projection, unit
 from agentface.view.hair import Hairline, hair_shade, hidden
@@ -251,12 +251,7 @@ class Renderer:
             covered = np.maximum(covered, hidden(model, Hairline(model, hair.hairline), hair))
         dressed = {
             "complexion": complexion(model, np.asarray(np.clip(covered, 0, 1), np.float32), self.look.skin.stubble),
-            "ambient": (
-                _deepened(model.shade[:, :1])
-                * (1 - hair_shade(model, hair)[:, None])
-                * (1 - 0.35 * corner_pockets(model)[:, None])
-                * (1 - 0.65 * lid_creases(model)[:, None])
-            ).astype(np.float32),
+            "ambient": (folds(model) * (1 - hair_shade(model, hair)[:, None])).astype(np.float32),
             "lit_at_rest": self._lit_at_rest(normals),
         }
         if self._picture is not None:
@@ -270,11 +265,6 @@ class Renderer:
                 self._targets.pop(next(iter(self._targets))).release()
             self._targets[key] = Targets.make(self.context, *key)
         return self._targets[key]
-
-
-def _deepened(shade: Floats) -> Floats:
-    """Ambient light whose darkest places, nostrils above all, are darker still: what one sees there is a hole."""
-    return np.asarray(shade * np.clip(0.25 + 1.5 * shade, 0.0, 1.0), np.float32)
 
 
 def _shirt(context: Any, program: Any, model: HeadModel) -> RigidPart:
