@@ -5,6 +5,7 @@ centroid in vec4 strand;   // across in locks, along 0..1, light, a number of it
 out vec4 colour;
 
 const float HAIRS = 26.0;      // that are seen in a lock
+const float WISP = 5.0;        // hairs that end together in a point
 const float TIP = 0.16;        // of the length, over which hairs end
 const float EDGE = 6.0;        // hairs a lock's width, over which the sheet's front edge grows dense
 const float APART = 0.45;      // from here on locks narrow towards their tips
@@ -20,8 +21,9 @@ void main() {
     float here = scattered(low), between = mix(here, scattered(low + 1.0), smoothstep(0.0, 1.0, hairs - low));
     float narrow = 1.05 - (0.35 + 0.6 * own) * smoothstep(APART, 1.0, along);
     float edge = EDGE * strand.x * (1.2 - along) + 0.8 * along;   // fewer hairs frame the face
-    if (here > edge + 0.25 || along > 1.0 - TIP * (0.3 + own) * here * here - 0.04 * own || abs(lock) > narrow + 0.35 * here) discard;
-    float fine = abs(2.0 * fract(2.7 * hairs) - 1.0), gap = 1.0 - (0.15 + 0.4 * own) * smoothstep(0.5, 1.0, abs(lock)) * (0.4 + drift.g);
-    float light = (1.0 + 0.36 * (between - 0.5) + 0.14 * (fine - 0.5) + 0.5 * (drift.b - 0.5)) * gap;
+    float wisp = hairs / WISP, ends = scattered(floor(wisp) + 7.0), last = 1.0 - TIP * ((0.3 + own) * ends * ends + 0.3 * own);
+    if (here > edge + 0.25 || abs(2.0 * fract(wisp) - 1.0) > (last - along) / (0.6 * TIP) || abs(lock) > narrow + 0.35 * here) discard;
+    float fine = abs(2.0 * fract(2.7 * hairs) - 1.0), gap = 1.0 - (0.10 + 0.25 * own) * smoothstep(0.5, 1.0, abs(lock)) * (0.4 + drift.g);
+    float light = (1.0 + 0.28 * (between - 0.5) + 0.12 * (fine - 0.5) + 0.34 * (drift.b - 0.5)) * gap;
     colour = vec4(mix(dull, bright, between * gap) * light, 1.0);
 }
