@@ -66,7 +66,7 @@ class Sheet:
         a = (i * count + j).ravel()
         quads = np.stack([a, a + 1, a + count, a + count, a + 1, a + count + 1], axis=1)
         rows, triangles = rows.reshape(columns * count, -1).astype(np.float32), quads.reshape(-1, 3).astype(np.int32)
-        outward = rows[triangles[:, 0], 6:9]
+        outward = rows[triangles, 6:9].sum(axis=1)
         a, b, c = (rows[triangles[:, corner], :3] for corner in range(3))
         inside = (np.cross(b - a, c - a) * outward).sum(1) < 0.0
         triangles[inside] = triangles[inside][:, ::-1]
