@@ -22,7 +22,7 @@ from agentface.anatomy.model import HeadModel
 from agentface.conventions import SIDES, Floats, Indices
 from agentface.deform import eyes
 from agentface.deform.eyes import EyesTables
-from agentface.deform.lid_fields import lid_fields
+from agentface.deform.lid_fields import LidFields, lid_fields
 from agentface.parameters import indices_of
 
 HOLD, CLOSE, HIGHER, WIDEN, FOLLOW, TIGHTEN, SLANT = range(7)
@@ -100,27 +100,9 @@ def coupled(closing: float, squeezing: float, other_closing: float, other_squeez
 def apply(tables: EyelidsTables, values: Floats, points: Floats) -> None:
     """Move the lids and what they take along of ``points (V + C, 3)`` m in place, to the parameters ``values``."""
     closing, squeezing, opening = (values[row] for row in (tables.closing, tables.squeezing, tables.opening))
-    tightening, alone = (
-        values[tables.tightening],
-        np.maximum(values[tables.inner_brow] - values[tables.outer_brow], 0.0),
-    )
-    columns = np.moveaxis(tables.fields, 1, 0).reshape(FLOOR + 1, -1)
-    (
-        hold,
-        close,
-        higher,
-        widen,
-        follow,
-        tighten,
-        slant,
-        shrink,
-        shrink_higher,
-        across,
-        up,
-        tight_across,
-        tight_up,
-        floor,
-    ) = columns
+    tightening = values[tables.tightening]
+    alone = np.maximum(values[tables.inner_brow] - values[tables.outer_brow], _ZERO)
+    lid = LidFields(tables.vertex[0].ravel(), *np.moveaxis(tables.fields, 1, 0).reshape(FLOOR + 1, -1))
     for side in range(len(SIDES)):
         c, s = (
             np.float32(level)
@@ -131,19 +113,19 @@ def apply(tables: EyelidsTables, values: Floats, points: Floats) -> None:
         pitch *= _ONE - LOOKING_UP * o * (pitch > 0)
         where, centre = tables.vertex[side].ravel(), tables.centre[side]
         at, rest = points[where], np.moveaxis(tables.rest[side], 1, 2).reshape(-1, 3)
-        at -= hold[:, None] * (at - rest)
+        at -= lid.hold[:, None] * (at - rest)
         way = s * (_TWO - s)
         tight = (_ONE - c) * tightening[side]
-        at[:, 0] += (way * across + tight * tight_across) * (1 - 2 * side)
-        at[:, 1] += way * up + tight * tight_up
-        turned = o * widen + pitch * follow + alone[side] * slant
-        angle = c * close + raised * higher + (_ONE - c) * turned + tight * tighten
-        scale = _ONE + c * shrink + raised * shrink_higher
+        at[:, 0] += (way * lid.across + tight * lid.tight_across) * (1 - 2 * side)
+        at[:, 1] += way * lid.up + tight * lid.tight_up
+        turned = o * lid.widen + pitch * lid.follow + alone[side] * lid.slant
+        angle = c * lid.close + raised * lid.meet_higher + (_ONE - c) * turned + tight * lid.tighten
+        scale = _ONE + c * lid.shrink + raised * lid.shrink_higher
         cosine, sine = scale * np.cos(angle) - _ONE, scale * np.sin(angle)
         y, z = at[:, 1] - centre[1], at[:, 2] - centre[2]
         at[:, 1] += cosine * y + sine * z
         at[:, 2] += cosine * z - sine * y
         arm = at - centre
         distance = np.sqrt((arm * arm).sum(1))
-        at += np.maximum(floor / np.maximum(distance, _NEAR) - _ONE, _ZERO)[:, None] * arm
+        at += np.maximum(lid.floor / np.maximum(distance, _NEAR) - _ONE, _ZERO)[:, None] * arm
         points[where] = at

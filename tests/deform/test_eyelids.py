@@ -244,3 +244,46 @@ def test_the_lids_take_the_gaze_that_the_eye_hole_leaves(face):
     pitch = eyes.eye_angles(tables, values, 0)[1]
     np.testing.assert_allclose(moved(face, values)[TABLES[face].vertex[0]],
                                posed(face, gaze_pitch=pitch)[TABLES[face].vertex[0]], atol=1e-7)  # fmt: skip
+
+
+TIGHTEN = "orbicularis_oculi_preseptalis"
+
+
+def test_the_lower_lids_own_muscle_raises_it_and_keeps_half_of_the_eye_open(face):
+    rest, tight = FACES[face].vertices, posed(face, **{TIGHTEN: 1})
+    assert 0.5 < opening(face, tight) / opening(face, rest) < 0.9
+    (upper, lower), (_, raised) = edges(face, rest), edges(face, tight)
+    np.testing.assert_allclose(edges(face, tight)[0][1:-1], upper[1:-1], atol=3e-4)
+    assert (raised[:, 1] - lower[:, 1]).max() > 1e-3
+
+
+def test_it_agrees_with_the_artists_squint(face):
+    model = FACES[face]
+    row = agreement(model, posed(face, **{TIGHTEN: 1}) - model.vertices, squint(model))
+    assert row.cosine > 0.85
+    assert row.covered > 0.8
+
+
+def squint(model):
+    return sum(model.shapes[f"eyeSquint{side}"].dense(len(model.vertices)) for side in ("Left", "Right"))
+
+
+def test_a_shut_eye_is_not_tightened_further(face):
+    shut = posed(face, **{CLOSE: 1})
+    np.testing.assert_allclose(posed(face, **{CLOSE: 1, TIGHTEN: 1}), shut, atol=5e-4)
+    assert largest_gap(face, posed(face, **{CLOSE: 1, TIGHTEN: 1})) < largest_gap(face, shut) + 1e-5
+
+
+def test_the_lids_slant_with_an_inner_brow_that_rises_alone(face):
+    rest = FACES[face].vertices
+    upper = np.array(FACES[face].eyelids.rings["l"][FACES[face].eyelids.edge_ring].upper)
+    inward = upper[np.argsort(np.abs(rest[upper, 0]))]
+    inner, outer = inward[2 : len(inward) // 3], inward[-len(inward) // 3 : -2]
+
+    def lifted(**muscles):
+        return posed(face, **muscles)[:, 1] - rest[:, 1]
+
+    sad = lifted(frontalis_medialis=1)
+    assert sad[inner].mean() > 1e-4
+    assert sad[outer].mean() < -1e-4
+    np.testing.assert_array_equal(posed(face, frontalis_medialis=1, frontalis_lateralis=1), rest)
