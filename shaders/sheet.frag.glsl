@@ -1,7 +1,7 @@
 #version 330 core
-#include "noise.glsl"
 centroid in vec3 dull, bright;
 centroid in vec4 strand;   // across in locks, along 0..1, light, a number of its own
+centroid in vec3 drift;    // how hairs wander, gaps deepen and light changes
 out vec4 colour;
 
 const float HAIRS = 26.0;      // that are seen in a lock
@@ -16,14 +16,13 @@ float scattered(float number) {
 
 void main() {
     float along = strand.y, number = floor(strand.x), lock = 2.0 * (strand.x - number) - 1.0, own = scattered(3.0 * number + 1.0);
-    vec4 drift = noise(vec3(0.23 * strand.x, 0.9 * along, 0.31 * strand.w));
-    float hairs = HAIRS * strand.x + 5.0 * (drift.r - 0.5), low = floor(hairs);
+    float hairs = HAIRS * strand.x + 5.0 * drift.r, low = floor(hairs);
     float here = scattered(low), between = mix(here, scattered(low + 1.0), smoothstep(0.0, 1.0, hairs - low));
     float narrow = 1.05 - (0.35 + 0.6 * own) * smoothstep(APART, 1.0, along);
     float edge = EDGE * strand.x * (1.2 - along) + 0.8 * along;   // fewer hairs frame the face
     float wisp = hairs / WISP, ends = scattered(floor(wisp) + 7.0), last = 1.0 - TIP * ((0.3 + own) * ends * ends + 0.3 * own);
     if (here > edge + 0.25 || abs(2.0 * fract(wisp) - 1.0) > (last - along) / (0.6 * TIP) || abs(lock) > narrow + 0.35 * here) discard;
-    float fine = abs(2.0 * fract(2.7 * hairs) - 1.0), gap = 1.0 - (0.10 + 0.25 * own) * smoothstep(0.5, 1.0, abs(lock)) * (0.4 + drift.g);
-    float light = (1.0 + 0.28 * (between - 0.5) + 0.12 * (fine - 0.5) + 0.34 * (drift.b - 0.5)) * gap;
+    float fine = abs(2.0 * fract(2.7 * hairs) - 1.0), gap = 1.0 - (0.10 + 0.25 * own) * smoothstep(0.5, 1.0, abs(lock)) * (0.9 + drift.g);
+    float light = (1.0 + 0.28 * (between - 0.5) + 0.12 * (fine - 0.5) + 0.34 * drift.b) * gap;
     colour = vec4(mix(dull, bright, between * gap) * light, 1.0);
 }

@@ -3,6 +3,7 @@
 #include "frame.glsl"
 #include "shading.glsl"
 #include "hair.glsl"
+#include "noise.glsl"
 #include "develop.glsl"
 in vec3 place;
 in vec3 along_rest;
@@ -11,6 +12,7 @@ in vec4 sheet;         // across in locks, along 0..1, light that the hair above
 
 centroid out vec3 dull, bright;  // between and on the highlights
 centroid out vec4 strand;        // as sheet
+centroid out vec3 drift;         // how hairs wander, gaps deepen and light changes
 
 uniform vec3 hair_colour;
 uniform float gloss;
@@ -24,5 +26,6 @@ void main() {
     dull = finish(light.body + 0.30 * light.shine);
     bright = finish(light.body + 1.5 * light.shine);
     strand = sheet;
+    drift = noise(vec3(0.23 * sheet.x, 0.9 * sheet.y, 0.31 * sheet.w)).rgb - 0.5;
     gl_Position = view_projection * vec4(placed, 1.0);
 }

@@ -59,6 +59,11 @@ class HeadHair:
         self._cap.draw_solid()
         self._context.disable(self._context.CULL_FACE)
 
+    def draw_inside(self) -> None:
+        """Draw hair that is seen from inside, after the skin."""
+        if self._sheets is not None:
+            self._sheets.draw_inside()
+
     def draw_soft(self, quality: str, onto: Any) -> None:
         """Draw what blends, after everything solid, into the framebuffer ``onto``; after :meth:`draw_solid`."""
         self._context.enable(self._context.CULL_FACE)

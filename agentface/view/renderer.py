@@ -160,6 +160,8 @@ class Renderer:
         self._programs.set(self._mouth.opening(geometry))
         self._skin(quality, pixels_a_metre(seen_from, targets.size)).draw(wrinkled=self._wrinkled)
         self._begin(targets)
+        if self._head_hair is not None:
+            self._head_hair.draw_inside()
         self._draw_solids(geometry)
         context.enable_only(moderngl.DEPTH_TEST | moderngl.BLEND)
         context.blend_func = (

@@ -191,8 +191,15 @@ class SheetArray:
         self._lying = 3 * int((~hangs).sum())
 
     def draw(self) -> None:
-        """Draw them."""
+        """Draw what is seen from outside."""
         self._context.enable(self._context.CULL_FACE)
-        self._array.render(vertices=self._lying)
+        self._array.render()
         self._context.disable(self._context.CULL_FACE)
+
+    def draw_inside(self) -> None:
+        """Draw what is seen from inside: hair that hangs behind face and neck, after what hides most of it."""
+        self._context.enable(self._context.CULL_FACE)
+        self._context.cull_face = "front"
         self._array.render(vertices=self._array.vertices - self._lying, first=self._lying)
+        self._context.cull_face = "back"
+        self._context.disable(self._context.CULL_FACE)
