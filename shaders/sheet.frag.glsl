@@ -2,7 +2,9 @@
 centroid in vec3 dull, bright;
 centroid in vec4 strand;   // across in locks, along 0..1, light, a number of its own
 centroid in vec3 drift;    // how hairs wander, gaps deepen and light changes
-out vec4 colour;
+out vec4 colour;           // its opacity becomes coverage of the samples
+
+uniform float least_cover; // of a pixel, that is drawn
 
 const float HAIRS = 26.0;      // that are seen in a lock
 const float WISP = 5.0;        // hairs that end together in a point
@@ -21,8 +23,11 @@ void main() {
     float narrow = 1.05 - (0.35 + 0.6 * own) * smoothstep(APART, 1.0, along);
     float edge = EDGE * strand.x * (1.2 - along) + 0.8 * along;   // fewer hairs frame the face
     float wisp = hairs / WISP, ends = scattered(floor(wisp) + 7.0), last = 1.0 - TIP * ((0.3 + own) * ends * ends + 0.3 * own);
-    if (here > edge + 0.25 || abs(2.0 * fract(wisp) - 1.0) > (last - along) / (0.6 * TIP) || abs(lock) > narrow + 0.35 * here) discard;
+    vec3 within = vec3(edge + 0.25 - here, (last - along) / (0.6 * TIP) - abs(2.0 * fract(wisp) - 1.0), narrow + 0.35 * here - abs(lock));
+    vec3 covered = clamp(0.5 + within / max(fwidth(within), 1e-4), 0.0, 1.0);
+    float cover = min(covered.x, min(covered.y, covered.z));
+    if (cover < least_cover) discard;
     float fine = abs(2.0 * fract(2.7 * hairs) - 1.0), gap = 1.0 - (0.10 + 0.25 * own) * smoothstep(0.5, 1.0, abs(lock)) * (0.9 + drift.g);
     float light = (1.0 + 0.28 * (between - 0.5) + 0.12 * (fine - 0.5) + 0.34 * drift.b) * gap;
-    colour = vec4(mix(dull, bright, between * gap) * light, 1.0);
+    colour = vec4(mix(dull, bright, between * gap) * light, cover);
 }

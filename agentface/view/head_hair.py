@@ -18,6 +18,7 @@ from agentface.view.programs import Programs
 from agentface.view.sheets import Sheet, SheetArray, flyaways, parting_line, sheets
 from agentface.view.strands import StrandArray
 from agentface.view.styles import PARTED, STYLES
+from agentface.view.tiers import tier_named
 
 _SEED = 20
 _STREAKS = {"fast": 6.0, "portrait": 7.0}
@@ -53,7 +54,7 @@ class HeadHair:
         self._program["narrowest"].value = _NARROWEST[quality]
         self._program["streaks"].value = _STREAKS[quality]
         if self._sheets is not None:
-            self._sheets.draw()
+            self._sheets.draw(fine=tier_named(quality).fine)
         self._strands_for(quality).draw_solid(eye)
         self._context.enable(self._context.CULL_FACE)
         self._cap.draw_solid()

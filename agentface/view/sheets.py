@@ -30,6 +30,8 @@ _TURNS_DEG = (60.0, 186.0)
 _ARC, _FALL, _SMOOTHINGS = 24, 12, 60
 _BESIDE = 0.0025
 """Metres from the parting where hair starts."""
+_AT_PARTING, _RISE = 0.3, 0.06
+"""How high hair lies where it starts, as a part of its thickness, and the metres over which it rises from there."""
 _LOCKS = 13
 _WIDTHS = 0.3, 1.7
 """Of the spaces between columns, in locks, as parts of their mean."""
@@ -38,6 +40,8 @@ _LOWEST = 0.0035
 """Metres over the hull, which is smoother than the head."""
 _AWAY, _TO_THE_FRONT = 0.004, 2.0
 """Metres that single hairs leave a sheet; the exponent with which their columns gather at the face."""
+_COVERAGE = 0x809E, 0x809F
+"""GL_SAMPLE_ALPHA_TO_COVERAGE, GL_SAMPLE_ALPHA_TO_ONE."""
 _TUCKED = 0.3
 """How high the front edge lies, as a part of the hair's thickness."""
 """Metres that a lock rises over the gaps beside it; the part by which the lengths of locks differ."""
@@ -133,7 +137,8 @@ def _sheet(
     points, along = _resampled(paths, t, (1.0 - _UNEVEN * uneven) * (0.94 + 0.06 * layer))
     ridge = np.sin(np.pi * (across % 1.0))[:, None] - 0.5
     tucked = _TUCKED + (1.0 - _TUCKED) * smoothstep(0.0, 1.5, across)[:, None]
-    height = thickness * layer * tucked * (0.12 + 0.88 * smoothstep(0.0, 0.045, along)) + _RIDGE * np.sqrt(t) * ridge
+    risen = _AT_PARTING + (1.0 - _AT_PARTING) * smoothstep(0.0, _RISE, along)
+    height = thickness * layer * tucked * risen + _RIDGE * np.sqrt(t) * ridge
     height = np.maximum(height, 0.001 + _LOWEST * smoothstep(0.0, 0.03, along))
     points = points + height[..., None] * hull.outward(points)
     if look.curl:
@@ -179,7 +184,7 @@ class SheetArray:
 
     def __init__(self, context: Any, program: Any, grown: list[Sheet], widest: float) -> None:
         """``widest`` m: hair above this height has the head behind it and is seen from outside only."""
-        self._context = context
+        self._context, self._program = context, program
         meshes = [sheet.mesh() for sheet in grown]
         firsts = np.cumsum([0, *(len(rows) for rows, _ in meshes)])
         rows = np.concatenate([rows for rows, _ in meshes])
@@ -190,16 +195,23 @@ class SheetArray:
         self._array = context.vertex_array(program, layout, context.buffer(ordered.tobytes()))
         self._lying = 3 * int((~hangs).sum())
 
-    def draw(self) -> None:
-        """Draw what is seen from outside."""
-        self._context.enable(self._context.CULL_FACE)
-        self._array.render()
-        self._context.disable(self._context.CULL_FACE)
+    def draw(self, *, fine: bool) -> None:
+        """Draw what is seen from outside; ``fine``: into several samples a pixel."""
+        self._program["least_cover"].value = 0.02 if fine else 0.5
+        self._draw("back", self._array.vertices, 0)
 
     def draw_inside(self) -> None:
         """Draw what is seen from inside: hair that hangs behind face and neck, after what hides most of it."""
-        self._context.enable(self._context.CULL_FACE)
-        self._context.cull_face = "front"
-        self._array.render(vertices=self._array.vertices - self._lying, first=self._lying)
-        self._context.cull_face = "back"
-        self._context.disable(self._context.CULL_FACE)
+        self._draw("front", self._array.vertices - self._lying, self._lying)
+
+    def _draw(self, culled: str, count: int, first: int) -> None:
+        context = self._context
+        context.cull_face = culled
+        context.enable(context.CULL_FACE)
+        for flag in _COVERAGE:
+            context.enable_direct(flag)
+        self._array.render(vertices=count, first=first)
+        for flag in _COVERAGE:
+            context.disable_direct(flag)
+        context.disable(context.CULL_FACE)
+        context.cull_face = "back"
