@@ -44,7 +44,7 @@ class HeadHair:
         self._grown: list[Sheet] = []
         if look.style in PARTED:
             self._grown = sheets(model, look, np.random.default_rng(_SEED))
-            self._sheets = SheetArray(context, sheet, self._grown, self._centre[1])
+            self._sheets = SheetArray(context, sheet, self._grown, model, self._centre)
             sheet["hair_colour"].value = tuple(look.colour)
         programs.set({"gloss": _GLOSS[look.style]})
 
@@ -54,7 +54,7 @@ class HeadHair:
         self._program["narrowest"].value = _NARROWEST[quality]
         self._program["streaks"].value = _STREAKS[quality]
         if self._sheets is not None:
-            self._sheets.draw(fine=tier_named(quality).fine)
+            self._sheets.draw(eye, fine=tier_named(quality).fine)
         self._strands_for(quality).draw_solid(eye)
         self._context.enable(self._context.CULL_FACE)
         self._cap.draw_solid()

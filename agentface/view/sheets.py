@@ -16,7 +16,9 @@ from agentface.view.hair import Hairline
 from agentface.view.hull import Hull
 from agentface.view.look import HairLook
 from agentface.view.ribbons import unit_rows
+from agentface.view.strands import middle_of, sector_of, skin_round
 from agentface.view.styles import REFERENCE_EYES, STYLES, Amount, parting_of, whorl_of
+from agentface.view.visible import before_skin
 
 _COLUMNS, _ROWS = 60, 22
 _INNER_FROM, _INNER_ROWS = 0.4, 8
@@ -182,36 +184,52 @@ def flyaways(grown: list[Sheet], amount: Amount, look: HairLook, rng: np.random.
 class SheetArray:
     """Sheets on the GPU; they turn with the head."""
 
-    def __init__(self, context: Any, program: Any, grown: list[Sheet], widest: float) -> None:
-        """``widest`` m: hair above this height has the head behind it and is seen from outside only."""
-        self._context, self._program = context, program
+    def __init__(self, context: Any, program: Any, grown: list[Sheet], model: HeadModel, centre: Doubles) -> None:
+        """``centre`` m: hair above it has the head behind it and is seen from outside only."""
+        self._context, self._program, self._centre = context, program, centre
         meshes = [sheet.mesh() for sheet in grown]
         firsts = np.cumsum([0, *(len(rows) for rows, _ in meshes)])
-        rows = np.concatenate([rows for rows, _ in meshes])
-        triangles = np.concatenate([triangles + first for (_, triangles), first in zip(meshes, firsts, strict=False)])
-        hangs = rows[triangles, 1].min(axis=1) < widest
-        ordered = np.concatenate([triangles[~hangs], triangles[hangs]]).astype(np.int32)
-        layout = [(context.buffer(rows.tobytes()), "3f 3f 3f 4f", "place", "along_rest", "facing", "sheet")]
-        self._array = context.vertex_array(program, layout, context.buffer(ordered.tobytes()))
-        self._lying = 3 * int((~hangs).sum())
+        self._rows = np.concatenate([rows for rows, _ in meshes])
+        parts = [triangles + first for (_, triangles), first in zip(meshes, firsts, strict=False)]
+        self._triangles = np.concatenate(parts).astype(np.int32)
+        self._layout = [
+            (context.buffer(self._rows.tobytes()), "3f 3f 3f 4f", "place", "along_rest", "facing", "sheet")
+        ]
+        self._skin = skin_round(model, centre)
+        self._arrays: dict[tuple[int, int, int] | None, tuple[Any, int]] = {}
+        self._drawn: tuple[Any, int] = self._seen_from(None)
 
-    def draw(self, *, fine: bool) -> None:
-        """Draw what is seen from outside; ``fine``: into several samples a pixel."""
+    def draw(self, eye: Doubles, *, fine: bool) -> None:
+        """Draw what ``eye``, in the model's axes, sees from outside; ``fine``: into several samples a pixel."""
         self._program["least_cover"].value = 0.02 if fine else 0.5
-        self._draw("back", self._array.vertices, 0)
+        self._drawn = self._seen_from(sector_of(eye - self._centre))
+        self._draw("back", self._drawn[0].vertices)
 
     def draw_inside(self) -> None:
-        """Draw what is seen from inside: hair that hangs behind face and neck, after what hides most of it."""
-        self._draw("front", self._array.vertices - self._lying, self._lying)
+        """Draw what the eye of the last ``draw`` sees from inside, after the skin: hair that hangs beside the neck."""
+        self._draw("front", self._drawn[1])
 
-    def _draw(self, culled: str, count: int, first: int) -> None:
-        context = self._context
+    def _draw(self, culled: str, count: int) -> None:
+        context, (array, _) = self._context, self._drawn
         context.cull_face = culled
         context.enable(context.CULL_FACE)
         for flag in _COVERAGE:
             context.enable_direct(flag)
-        self._array.render(vertices=count, first=first)
+        array.render(vertices=count)
         for flag in _COVERAGE:
             context.disable_direct(flag)
         context.disable(context.CULL_FACE)
         context.cull_face = "back"
+
+    def _seen_from(self, sector: tuple[int, int, int] | None) -> tuple[Any, int]:
+        """An array of what may be seen from a sector, and how many of its indices hang: these are seen from inside."""
+        if sector not in self._arrays:
+            places = self._rows[:, :3] - self._centre.astype(np.float32)
+            triangles = self._triangles
+            if sector is not None:
+                triangles = triangles[before_skin(places, self._skin, middle_of(sector))[triangles].any(axis=1)]
+            ordered = triangles[np.argsort(places[triangles, 1].min(axis=1), kind="stable")]
+            buffer = self._context.buffer(ordered.tobytes())
+            hanging = int((places[triangles, 1].min(axis=1) < 0.0).sum())
+            self._arrays[sector] = self._context.vertex_array(self._program, self._layout, buffer), 3 * hanging
+        return self._arrays[sector]

@@ -68,15 +68,13 @@ class StrandArray:
             (context.buffer(np.concatenate([floats, sides], axis=1).tobytes()), "3f 3f 3f 4f 1f",
              "offset", "along_rest", "stroke", "paint", "side"),
         ]  # fmt: skip
-        corners = skin[model.triangles]
-        solid = np.concatenate([skin, corners.mean(1), 0.5 * (corners[:, 0] + corners[:, 1])])
-        self._skin = (solid - centre).astype(np.float32)
+        self._skin = skin_round(model, centre)
         self._arrays: dict[tuple[int, int, int] | None, tuple[Any, int]] = {}
         self._drawn: tuple[Any, int] | None = None
 
     def draw_solid(self, eye: Doubles) -> None:
         """Draw those that hide what is behind them, as seen by ``eye`` in the model's axes, where the skin is."""
-        array, solid = self._drawn = self._seen_from(_sector(eye - self._centre))
+        array, solid = self._drawn = self._seen_from(sector_of(eye - self._centre))
         self.program["solid"].value = 1.0
         if solid:
             array.render(vertices=solid)
@@ -94,7 +92,7 @@ class StrandArray:
             strands, pieces = self._strands, self._strands.points.shape[1] - 1
             chosen = np.arange(len(strands) * pieces)
             if sector is not None:
-                chosen = self._chosen(_middle(sector))
+                chosen = self._chosen(middle_of(sector))
             edge = (len(strands) - strands.fine) * pieces
             solid, fine = chosen[chosen < edge], np.sort(chosen[chosen >= edge])
             indices = _ribbons(np.concatenate([solid, fine]), pieces)
@@ -115,7 +113,15 @@ class StrandArray:
         return np.asarray(near[seen // pieces] * pieces + seen % pieces)
 
 
-def _sector(arm: Doubles) -> tuple[int, int, int] | None:
+def skin_round(model: HeadModel, centre: Doubles) -> Floats:
+    """``(M, 3)`` m: points all over the skin, from ``centre``: what hides hair."""
+    corners = model.vertices[model.triangles]
+    return (np.concatenate([model.vertices, corners.mean(1), 0.5 * (corners[:, 0] + corners[:, 1])]) - centre).astype(
+        np.float32
+    )
+
+
+def sector_of(arm: Doubles) -> tuple[int, int, int] | None:
     """The turn, pitch and distance about which an eye stands; None for one so near that it sees all round."""
     distance = float(np.linalg.norm(arm))
     if distance < _NEAR:
@@ -125,7 +131,8 @@ def _sector(arm: Doubles) -> tuple[int, int, int] | None:
     return turn % (360 // _TURN_DEG), pitch, round(2 * np.log2(distance))
 
 
-def _middle(sector: tuple[int, int, int]) -> Doubles:
+def middle_of(sector: tuple[int, int, int]) -> Doubles:
+    """The place from the head's middle that stands for a sector, metres."""
     turn, pitch = np.radians([sector[0] * _TURN_DEG, sector[1] * _PITCH_DEG])
     towards = np.array([np.sin(turn) * np.cos(pitch), np.sin(pitch), np.cos(turn) * np.cos(pitch)])
     return np.asarray(2.0 ** (0.5 * sector[2]) * towards)
