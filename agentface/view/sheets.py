@@ -30,9 +30,9 @@ _ON_PARTING = 0.45
 _TURNS_DEG = (60.0, 186.0)
 """Round the head from the front, where it is widest: where the first and the last column lie."""
 _ARC, _FALL, _SMOOTHINGS = 24, 12, 60
-_BESIDE = 0.0025
+_BESIDE = 0.0012
 """Metres from the parting where hair starts."""
-_AT_PARTING, _RISE = 0.3, 0.06
+_AT_PARTING, _RISE = 0.06, 0.055
 """How high hair lies where it starts, as a part of its thickness, and the metres over which it rises from there."""
 _LOCKS = 13
 _WIDTHS = 0.3, 1.7
@@ -139,7 +139,7 @@ def _sheet(
     points, along = _resampled(paths, t, (1.0 - _UNEVEN * uneven) * (0.94 + 0.06 * layer))
     ridge = np.sin(np.pi * (across % 1.0))[:, None] - 0.5
     tucked = _TUCKED + (1.0 - _TUCKED) * smoothstep(0.0, 1.5, across)[:, None]
-    risen = _AT_PARTING + (1.0 - _AT_PARTING) * smoothstep(0.0, _RISE, along)
+    risen = _AT_PARTING + (1.0 - _AT_PARTING) * np.sin(0.5 * np.pi * np.clip(along / _RISE, 0.0, 1.0))
     height = thickness * layer * tucked * risen + _RIDGE * np.sqrt(t) * ridge
     height = np.maximum(height, 0.001 + _LOWEST * smoothstep(0.0, 0.03, along))
     points = points + height[..., None] * hull.outward(points)
