@@ -25,7 +25,7 @@ PARTINGS = 3
 """How often lips are parted after the teeth have pushed them: each time takes what the last one left."""
 FARTHEST = np.float32(0.001)
 """m, the gap that press still closes; one twice as wide it leaves."""
-CORNER = np.float32(0.002)
+CORNER = np.float32(0.0015)
 """m from a ring's ends over which the push sets in: there its columns may run back and forth."""
 _ARCH_KEPT = 0.3  # of its distance at rest that a vertex keeps from the teeth
 _SOFTEST = 0.0012  # m, over which the teeth begin to push
@@ -159,7 +159,7 @@ def _part_lips(tables: ContactTables, points: Floats) -> None:
     for own, other, at_rest, sign, own_push, other_push in lips:
         overlap, second, part, inside = _overlaps(tables.grid, own, other, sign, points)
         push = np.float32(0.5) * np.maximum(overlap - at_rest, np.float32(0.0))
-        push *= np.clip(inside / CORNER, np.float32(0.0), np.float32(1.0))
+        push *= np.clip(inside / CORNER, np.float32(0.0), np.float32(1.0)) ** 2
         push[..., [0, -1]] = 0.0
         np.maximum.at(own_push, np.broadcast_to(own, push.shape), push)
         for neighbour, share in ((second - 1, 1 - part), (second, part)):

@@ -84,7 +84,7 @@ def test_nothing_of_the_front_folds_over_that_is_seen_from_outside(name):
     lid_fold = np.isin(model.triangles, np.concatenate(folds)).any(axis=1)
     flipped = front & (areas(model) <= 0.0)
     assert not (flipped & ~(lip | mouth | wet | ear | nostrils | lid_fold)).any()
-    assert (flipped & lid_fold).sum() < 12, "only the underside of the skin that hangs over the lids"
+    assert (flipped & lid_fold).sum() < 20, "only the underside of the skin that hangs over the lids"
     ambient = model.shade[model.triangles, 0].mean(axis=1)
     assert np.percentile(ambient[flipped & lip], 95) < 0.05, "of the lips only what they press together"
     assert (flipped & nostrils & ~(lip | mouth)).sum() < 60
@@ -181,9 +181,9 @@ def with_value(value):
 @pytest.mark.parametrize(
     ("change", "expected", "got"),
     [
-        (lambda uv: uv[:-1], "an array of shape (6139, 2)", "(6138, 2)"),
-        (lambda uv: np.repeat(uv, 2, axis=1), "an array of shape (6139, 2)", "(6139, 4)"),
-        (lambda uv: np.ascontiguousarray(uv[:, 0]), "an array of shape (6139, 2)", "(6139,)"),
+        (lambda uv: uv[:-1], "an array of shape (6159, 2)", "(6158, 2)"),
+        (lambda uv: np.repeat(uv, 2, axis=1), "an array of shape (6159, 2)", "(6159, 4)"),
+        (lambda uv: np.ascontiguousarray(uv[:, 0]), "an array of shape (6159, 2)", "(6159,)"),
         (with_value(np.nan), "coordinates in 0..1", "nan"),
         (with_value(np.inf), "coordinates in 0..1", "inf"),
         (with_value(1.5), "coordinates in 0..1", "1.5] at vertex 7"),

@@ -142,7 +142,7 @@ def test_muscles_alone_turn_no_skin_over():
         edges, draw = Edges.of(model), np.random.default_rng(7)
         outside = ~edges.folding()
         for _ in range(500):
-            points = contracted(face, draw.random(len(VECTOR_MUSCLES)) ** 0.5)
+            points = contracted(face, draw.random(len(VECTOR_MUSCLES)) ** 0.4)
             before += (edges.flipped(points) & outside).any()
             compiled.apply(TABLES[face], points)
             after += (edges.flipped(points) & outside).any()

@@ -28,7 +28,7 @@ from agentface.smoothstep import falloff
 
 _FACE, _BAG, _BODY, _SOCKETS = 0, 1, 2, {"r": 3, "l": 6}
 _NECK_BOTTOM = 5.6
-_THINNED, _THINNED_EARS = 170, 20
+_THINNED, _THINNED_EARS = 140, 30
 _SMALLEST_OFFSET = 5e-6
 METRES = 0.1
 _EVENINGS = 20

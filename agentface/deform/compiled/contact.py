@@ -131,7 +131,8 @@ def _push_apart(
             vertex = tables.grid[ring, own[k]]
             for facing in range(across.shape[0]):
                 overlap, second, part, inside = _overlap(across[facing], up[facing], points[vertex], sign)
-                push = _HALF * (overlap - at_rest[k]) * min(_ONE, inside / CORNER)
+                near = min(_ONE, inside / CORNER)
+                push = _HALF * (overlap - at_rest[k]) * near * near
                 if push <= _ZERO or inside <= _ZERO:
                     continue
                 touched = True
