@@ -192,9 +192,7 @@ class SheetArray:
         self._rows = np.concatenate([rows for rows, _ in meshes])
         parts = [triangles + first for (_, triangles), first in zip(meshes, firsts, strict=False)]
         self._triangles = np.concatenate(parts).astype(np.int32)
-        self._layout = [
-            (context.buffer(self._rows.tobytes()), "3f 3f 3f 4f", "place", "along_rest", "facing", "sheet")
-        ]
+        self._layout = [(context.buffer(self._rows.tobytes()), "3f 3f 3f 4f", "place", "along_rest", "facing", "sheet")]
         self._skin = skin_round(model, centre)
         self._arrays: dict[tuple[int, int, int] | None, tuple[Any, int]] = {}
         self._drawn: tuple[Any, int] = self._seen_from(None)

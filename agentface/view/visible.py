@@ -29,7 +29,7 @@ def on_near_side(points: Floats, towards: Doubles) -> Chosen:
 
 
 def before_skin(points: Floats, skin: Floats, eye: Doubles) -> Flags:
-    """``(N,)``: which of ``points (N, 3)`` the ``skin (M, 3)`` does not surely hide from an ``eye`` near to this one."""
+    """``(N,)``: which of ``points (N, 3)`` the ``skin (M, 3)`` does not surely hide from any ``eye`` near this one."""
     seen, face = (_seen_from(eye, places) for places in (points, skin))
     low = np.minimum(seen.min(0), face.min(0))[:2] - 2 * _CELL
     shape = ((np.maximum(seen.max(0), face.max(0))[:2] - low) / _CELL).astype(int) + 3

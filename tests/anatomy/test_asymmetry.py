@@ -1,4 +1,4 @@
-"""A face's own asymmetry: of its bones when it is loaded, of its muscles between rules and deformer; both can be off."""
+"""A face's own asymmetry: of its bones when it is loaded, of its muscles before the deformer; both can be off."""
 
 import shutil
 

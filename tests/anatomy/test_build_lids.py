@@ -74,7 +74,8 @@ def eye():
         for sign in (1.0, -1.0):
             first = len(points)
             points += [
-                centre + [np.sin(polar) * np.cos(t), sign * np.sin(polar) * np.sin(t), np.cos(polar)] for t in turn
+                np.add(centre, [np.sin(polar) * np.cos(t), sign * np.sin(polar) * np.sin(t), np.cos(polar)])
+                for t in turn
             ]
             halves.append(list(range(first, len(points))))
         rings.append(tuple(halves))

@@ -58,9 +58,9 @@ def test_mirrored_muscles_gather_mirrored_volumes(values):
     for face, model in FACES.items():
         one, other = model.vertices.copy(), model.vertices.copy()
         for pose, points in ((values, one), (swapped, other)):
-            pose = pose.copy()
-            pose[others] = 0.0
-            volumes.apply(TABLES[face], pose, points)
+            alone = pose.copy()
+            alone[others] = 0.0
+            volumes.apply(TABLES[face], alone, points)
         np.testing.assert_allclose(other[model.mirror] * [-1, 1, 1], one, atol=2e-6)
 
 
@@ -78,7 +78,9 @@ def test_a_smile_lifts_an_apple_out_of_each_cheek(face):
 def test_the_chin_bulges_below_its_fold(face):
     way, at = moved(face, mentalis=1.0), FACES[face].landmarks
     out = (way * FACES[face].normals).sum(axis=1)
-    near = {name: np.linalg.norm(FACES[face].vertices - at[name], axis=1).argmin() for name in ("pogonion", "chin_fold")}
+    near = {
+        name: np.linalg.norm(FACES[face].vertices - at[name], axis=1).argmin() for name in ("pogonion", "chin_fold")
+    }
     assert out[near["pogonion"]] > 2e-4
     assert out[near["chin_fold"]] < 0.5 * out[near["pogonion"]]
 

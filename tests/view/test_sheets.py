@@ -72,7 +72,9 @@ def test_a_sheets_triangles_face_outward_and_its_places_are_parts(grown):
 
 def test_single_hairs_leave_the_outer_sheets_and_stay_near(grown):
     model, look, found = grown
-    growth = flyaways(found, Amount(locks=0, width=0.001, hairs=60, radius=1e-4, points=8), look, np.random.default_rng(1))
+    growth = flyaways(
+        found, Amount(locks=0, width=0.001, hairs=60, radius=1e-4, points=8), look, np.random.default_rng(1)
+    )
     assert growth.points.shape == (60, 8, 3)
     outer = np.concatenate([sheet.points.reshape(-1, 3) for sheet in found[:2]])
     away = [np.linalg.norm(outer - point, axis=1).min() for point in growth.points.reshape(-1, 3)[::7]]
