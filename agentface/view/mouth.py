@@ -14,6 +14,7 @@ from agentface.view.parts import RigidPart
 from agentface.view.teeth import crown_places
 
 _SHADED = 0.25  # of the light on the lower jaw, which the upper lip and the nose keep off
+_COLUMNS = np.linspace(0.2, 0.8, 7)  # where the gap is looked at: parts of the way from corner to corner
 
 
 class Mouth:
@@ -26,9 +27,11 @@ class Mouth:
         self._corners = ring.upper[0], ring.upper[-1]
         touching = model.lips.rings[: LipRing.RED + 1]
         self._upper, self._lower = (
-            np.array([half[len(half) // 2 - 2 : len(half) // 2 + 3] for half in halves])
+            np.array([[half[round(at * (len(half) - 1))] for at in _COLUMNS] for half in halves])
             for halves in ([ring.upper for ring in touching], [ring.lower for ring in touching])
         )
+        self._bow = 1.0 - (2.0 * _COLUMNS - 1.0) ** 2  # an opening between two bows
+        self._at_rest = self._gap(model.vertices)
 
     def draw(self, geometry: FaceGeometry) -> None:
         """Draw it as ``geometry`` has it."""
@@ -40,31 +43,31 @@ class Mouth:
 
     def light(self, geometry: FaceGeometry) -> float:
         """The part of the light that reaches the teeth: all through a mouth open by a finger, little through a slit."""
-        wider = self._lip_gap(geometry.vertices) - self._lip_gap(self._model.vertices)
-        opened = wider / (0.12 * self._model.landmarks.eye_separation)
+        opened = (self._gap(geometry.vertices) - self._at_rest) / (0.12 * self._model.landmarks.eye_separation)
         return min(1.0, 0.03 + 0.97 * max(0.0, opened))
 
     def opening(self, geometry: FaceGeometry) -> dict[str, object]:
         """The uniforms of ``shaders/mouth.glsl``."""
         vertices = geometry.vertices
-        upper, lower = self._edges(vertices)
         half = 0.5 * float(vertices[self._corners[0], 0] - vertices[self._corners[1], 0])
         front = 0.5 * float(vertices[self._upper[0], 2].mean() + vertices[self._lower[0], 2].mean())
         corner = vertices[list(self._corners), 1:].mean(0)
+        upper, lower = (float(edge[len(edge) // 2]) for edge in self._edges(vertices))
+        middle, half_gap = 0.5 * (upper + lower), 0.5 * self._gap(vertices)
         return {
             "mouth_light": self.light(geometry),
-            "mouth_opening": (upper, lower, abs(half), front),
-            "mouth_bow": (front - float(corner[1]), float(corner[0]) - 0.5 * (upper + lower)),
+            "mouth_opening": (middle + half_gap, middle - half_gap, abs(half), front),
+            "mouth_bow": (front - float(corner[1]), float(corner[0]) - middle),
         }
 
-    def _edges(self, vertices: Floats) -> tuple[float, float]:
-        """Heights of the lips' edges in the middle, m: of the rings that may touch, where least light comes through."""
-        upper, lower = (vertices[rings, 1].mean(axis=1) for rings in (self._upper, self._lower))
-        return float(upper.min()), float(lower.max())
+    def _edges(self, vertices: Floats) -> tuple[Floats, Floats]:
+        """Heights of the lips' edges by column, m: of the rings that may touch, where least light comes through."""
+        return vertices[self._upper, 1].min(axis=0), vertices[self._lower, 1].max(axis=0)
 
-    def _lip_gap(self, vertices: Floats) -> float:
+    def _gap(self, vertices: Floats) -> float:
+        """How high the middle of an opening between two bows is that lets through as much as the lips do, m."""
         upper, lower = self._edges(vertices)
-        return upper - lower
+        return float(np.maximum(upper - lower, 0.0) @ self._bow / (self._bow @ self._bow))
 
 
 def _part(context: Any, program: Any, model: HeadModel, name: str) -> RigidPart:

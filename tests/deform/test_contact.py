@@ -131,7 +131,7 @@ def test_the_oracle_sees_lips_that_pass_through(face):
     points[np.unique(mouth.lips[0]), 1] -= 2 * MM
     assert mouth.crossings(points, np.eye(4))[0] > 10
     points = model.vertices.copy()
-    points[TABLES[face].grid.ravel(), 1:] -= [3 * MM, 10 * MM]
+    points[TABLES[face].grid.ravel(), 1:] -= [3 * MM, 12 * MM]
     assert min(mouth.crossings(points, np.eye(4))[1:]) > 10
 
 
