@@ -29,5 +29,5 @@ void main() {
     if (cover < least_cover) discard;
     float fine = abs(2.0 * fract(2.7 * hairs) - 1.0), gap = 1.0 - (0.10 + 0.25 * own) * smoothstep(0.5, 1.0, abs(lock)) * (0.9 + drift.g);
     float light = (1.0 + 0.28 * (between - 0.5) + 0.12 * (fine - 0.5) + 0.34 * drift.b) * gap;
-    colour = vec4(mix(dull, bright, between * gap) * light, cover);
+    colour = vec4(mix(dull, bright, between * gap) * light, least_cover < 0.5 ? cover : 1.0);   // with one sample a pixel there is hair or none
 }
