@@ -8,7 +8,7 @@ out vec4 colour;
 uniform float coils;    // 1: what one sees is the hair itself, 0: it lies below strands
 uniform vec4 parting;   // x and z where it begins, x and z where it ends, metres
 
-const float BARE = 0.0012;   // metres to both sides of the parting
+const float BARE = 0.0009;   // metres to both sides of the parting
 
 void main() {
     vec4 grain = noise(rest_position * mix(vec3(22.0, 120.0, 170.0), vec3(61.0), coils));   // hair, combed to the sides
@@ -17,6 +17,6 @@ void main() {
     vec3 hair = lit * mix(1.0, 0.70, coils) * mix(0.75 + 1.1 * fine, 0.25 + 2.6 * coil * coil * (0.5 + fine), coils);
     float way = clamp((parting.y - rest_position.z) / max(parting.y - parting.w, 1e-4), 0.0, 1.0);
     float off = abs(rest_position.x - mix(parting.x, parting.z, way));
-    float bare = smoothstep(BARE, 0.2 * BARE, off) * step(parting.w, rest_position.z) * (0.55 + 0.4 * fine);
+    float bare = smoothstep(BARE, 0.2 * BARE, off) * step(parting.w, rest_position.z) * (0.35 + 0.4 * fine);
     colour = vec4(mix(hair, scalp, bare), blended(alpha));
 }

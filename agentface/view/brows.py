@@ -66,8 +66,10 @@ def brow_hairs(model: HeadModel, normals: Floats, look: HairLook, rng: np.random
         x, y = line.place(s)
         places.append(np.stack([side * x, y + off * line.half_height(s)], axis=1))
         # hairs stand up at the inner end and lie along the brow farther out, leaning to its middle line
-        lean = np.radians(46 * np.exp(-6 * s) + 18 * (1 - s) - 22 * off * (s > 0.2) + rng.normal(0, 7, count))
-        length = 0.0070 * line.scale * (0.6 + 0.6 * rng.random(count)) * (1 - 0.3 * s)
+        lean = np.radians(30 * np.exp(-6 * s) + 14 * (1 - s) - 22 * off * (s > 0.2) + rng.normal(0, 5, count))
+        length = (
+            0.0064 * line.scale * (0.6 + 0.5 * rng.random(count)) * (0.7 + 0.3 * np.minimum(5 * s, 1)) * (1 - 0.25 * s)
+        )
         halfway, end = (_turned(line.direction(s), lean * part) * length[:, None] for part in (1.0, 0.55))
         flats.append(np.stack([0.5 * halfway, 0.25 * halfway + 0.75 * end], axis=1) * [side, 1.0])
     flat = np.concatenate(flats)
@@ -78,7 +80,7 @@ def brow_hairs(model: HeadModel, normals: Floats, look: HairLook, rng: np.random
     n = roots.frames(model.vertices, normals)[1][:, :, 2]
     up = unit_rows(np.array([0.0, 1.0, 0.0]) - n * n[:, 1:2])
     x = np.cross(up, n)
-    lift = np.array([0.0010, 0.0009]) * line.scale * (0.5 + rng.random((2 * count, 1)))
+    lift = np.array([0.0007, 0.0005]) * line.scale * (0.5 + rng.random((2 * count, 1)))
     curves = flat[..., :1] * x[:, None] + flat[..., 1:] * up[:, None] + lift[..., None] * n[:, None]
     radii = (0.00011 + 0.00008 * rng.random(2 * count)) * line.scale
     paint = np.column_stack([_shades(look.brow_colour, 0.4 * look.grey, 2 * count, rng), np.full(2 * count, 0.85)])
