@@ -27,7 +27,7 @@ _LAYERS = (1.0, 0.6)
 """Where between the skin and the outside of the hair the sheets lie."""
 _ON_PARTING = 0.45
 """The part of the columns that start along the parting; the others fan out round the whorl."""
-_TURNS_DEG = (50.0, 186.0)
+_TURNS_DEG = (46.0, 186.0)
 """Round the head from the front, where it is widest: where the first and the last column lie."""
 _ARC, _FALL, _SMOOTHINGS = 24, 12, 60
 _BESIDE = 0.0008
@@ -44,7 +44,7 @@ _AWAY, _TO_THE_FRONT = 0.004, 2.0
 """Metres that single hairs leave a sheet; the exponent with which their columns gather at the face."""
 _COVERAGE = 0x809E, 0x809F
 """GL_SAMPLE_ALPHA_TO_COVERAGE, GL_SAMPLE_ALPHA_TO_ONE."""
-_TUCKED = 0.4
+_TUCKED = 0.2
 """How high the front edge lies, as a part of the hair's thickness."""
 """Metres that a lock rises over the gaps beside it; the part by which the lengths of locks differ."""
 
