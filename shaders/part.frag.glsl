@@ -21,7 +21,7 @@ vec3 enamel(out float gum) {
     vec3 c = mix(teeth, teeth * vec3(0.96, 0.90, 0.83), smoothstep(0.30, 0.95, up));
     c = mix(c, 0.75 * teeth.ggg, 0.45 * smoothstep(0.14, 0.0, up));   // the edge lets light through
     c *= mix(vec3(1.0), vec3(0.74, 0.64, 0.56), smoothstep(0.70, 1.0, aside));   // between the teeth
-    float line = 0.80 - 0.13 * aside;
+    float line = 0.93 - 0.13 * aside;
     gum = smoothstep(line - 0.03, line + 0.03, up);
     return mix(c * mix(1.0, 0.80, smoothstep(line - 0.16, line, up)), GUM, gum);
 }

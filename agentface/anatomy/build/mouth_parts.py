@@ -98,10 +98,11 @@ def _gum(arch: Doubles, edge: float, out: float) -> PartMesh:
     normal *= np.sign(normal[len(normal) // 2, 1])
     profile = ((0.018, 0.052), (0.034, 0.074), (0.046, 0.12), (0.036, 0.19), (-0.05, 0.19), (-0.05, 0.10))
     rows = []
-    short = 1.0 if out > 0 else 0.62  # below the lower incisors the chin leaves little room
+    # a smile bares the upper crowns whole; below the lower incisors the chin leaves little room
+    short, bared = (1.0, 0.024) if out > 0 else (0.62, 0.0)
     for offset, height in profile:
         flat = path + normal * offset
-        rows.append(np.stack([flat[:, 0], np.full(len(flat), edge + out * short * height), flat[:, 1]], 1))
+        rows.append(np.stack([flat[:, 0], np.full(len(flat), edge + out * (short * height + bared)), flat[:, 1]], 1))
     positions = np.concatenate(rows)
     faces = np.array(_tube(len(path), len(profile), closed=False), np.int32)
     faces = faces if out > 0 else faces[:, ::-1]
