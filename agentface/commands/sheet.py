@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import click
 
@@ -19,9 +19,20 @@ from agentface.commands.options import (
 )
 
 if TYPE_CHECKING:
+    from agentface.conventions import Floats
     from agentface.parameters import FacePose
 
-    Poses = list[tuple[str, FacePose]]
+
+class Cell(NamedTuple):
+    """One picture: its label, what the rules make of its emotions, and the parameters held by name."""
+
+    label: str
+    felt: FacePose
+    held: dict[str, float]
+
+    def pose(self, gains: Floats) -> FacePose:
+        """What a face shows whose sides make ``gains (COUNT,)`` of an emotion."""
+        return type(self.felt)(self.felt.values * gains).replace(self.held)
 
 
 def _levels(_: click.Context, __: click.Parameter, value: str) -> list[float]:
@@ -74,7 +85,7 @@ def sheet(
 
     check_picture_name(output)
     check_writable(output)
-    shown: Poses = [_pose(text) for text in poses]
+    shown = [_asked(text) for text in poses]
     if emotions or not poses:
         shown += _by_level(emotions, levels)
     width = columns or (min(4, len(shown)) if poses else len(levels))
@@ -82,27 +93,29 @@ def sheet(
     drawn = make_face(face, deformer, compiled=len(shown) > 4, look=look)
     terminal = Console(stderr=True)
     bar = track(shown, "drawing", console=terminal, transient=True, disable=not terminal.is_terminal)
-    panels = [(drawn.render(size, camera, quality, pose=pose), label, "") for label, pose in bar]
+    panels = [(drawn.render(size, camera, quality, pose=cell.pose(drawn.model.gains)), cell.label, "") for cell in bar]
     write_picture(output, np.asarray(contact_sheet(panels, width)))
 
 
-def _by_level(emotions: str | None, levels: Sequence[float]) -> Poses:
+def _by_level(emotions: str | None, levels: Sequence[float]) -> list[Cell]:
     from agentface.emotion.inference import default_inference
     from agentface.emotion.state import EMOTIONS, EmotionState
 
     infer = default_inference()
     names = [name.strip() for name in emotions.split(",")] if emotions else EMOTIONS
     states = [(f"{name} {level:g}", EmotionState.of({name: level})) for name in names for level in levels]
-    return [(label, infer.pose(state)) for label, state in states]
+    return [Cell(label, infer.pose(state), {}) for label, state in states]
 
 
-def _pose(text: str) -> tuple[str, FacePose]:
-    """The label and the pose that ``LABEL: NAME=V, ...`` describes; without a label it is its own."""
+def _asked(text: str) -> Cell:
+    """What ``LABEL: NAME=V, ...`` asks for; without a label it is its own."""
     from agentface.emotion.inference import default_inference
     from agentface.emotion.state import ALIASES, EMOTIONS, EmotionState
 
     label, colon, given = text.partition(":")
     values = read_assignments([given if colon else text])
     felt = {name: value for name, value in values.items() if name.lower() in (*EMOTIONS, *ALIASES)}
-    pose = default_inference().pose(EmotionState.of(felt))
-    return label.strip(), pose.replace({name: value for name, value in values.items() if name not in felt})
+    held = {name: value for name, value in values.items() if name not in felt}
+    cell = Cell(label.strip(), default_inference().pose(EmotionState.of(felt)), held)
+    cell.felt.replace(held)  # a wrong name is told before anything is drawn
+    return cell

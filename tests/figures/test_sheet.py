@@ -5,6 +5,7 @@ import pytest
 from click.testing import CliRunner
 from PIL import Image
 
+from agentface import Face
 from agentface.cli import cli
 from agentface.figures.sheet import CAPTION, GAP, png, sheet
 
@@ -57,3 +58,14 @@ def test_panels_of_a_sheet_lie_where_they_belong_and_keep_their_pixels():
     places = [(GAP, GAP), (GAP + 42, GAP), (GAP, GAP + 20 + CAPTION + GAP)]
     assert [image.getpixel((x + 29, y + 19)) for x, y in places] == colours
     assert png(image).startswith(b"\x89PNG")
+
+
+def test_an_emotion_on_a_sheet_is_the_one_that_the_face_shows(tmp_path):
+    """The sides of a face differ in what they make of an emotion, here as elsewhere; a muscle by name is as asked."""
+    path, face = tmp_path / "sheet.png", Face()
+    call("--pose", "a: fear=1, nasalis=0.6", "--size", "64x72", "-o", path)
+    face.set_emotion("fear", 1.0, fade=0.0)
+    face.set_muscle("nasalis", 0.6, fade=0.0)
+    face.step(0.0)
+    with Image.open(path) as image:
+        np.testing.assert_array_equal(np.asarray(image.crop((GAP, GAP, GAP + 64, GAP + 72))), face.render((64, 72)))
