@@ -57,7 +57,8 @@ def scalp_cap(model: HeadModel, line: Hairline, look: HairLook) -> Anchored:
     light, triangles = mesh.mean(light), mesh.triangles
     anchors = np.repeat(used[mesh.ends].astype(np.int32), 2, axis=1)
     depth = line.behind(places)
-    rise = 0.0003 + _THICKNESS[look.style] * np.clip(depth / 0.020, 0, 1)
+    # what is nearly clear lies on the skin: beyond its outline one would see through
+    rise = 0.0003 + _THICKNESS[look.style] * np.clip((depth - 0.6 * _STRIP[look.style]) / 0.020, 0, 1)
     lifted = places + normals * rise[:, None].astype(np.float32)
     ones = np.ones(len(places))
     edge = np.clip((depth + 0.001) / _STRIP[look.style], 0, 1)

@@ -26,9 +26,11 @@ from agentface.view.parts import Eyeball, RigidPart
 from agentface.view.programs import FRAME_BINDING, Programs
 from agentface.view.ribbons import HairArray
 from agentface.view.shadow import KeyShadow
+from agentface.view.sheets import edge_shade
 from agentface.view.shirt import shirt
 from agentface.view.skin import Skin, SkinFields, SkinMeshes
 from agentface.view.skin_image import skin_texture
+from agentface.view.styles import PARTED
 from agentface.view.targets import Targets, checked_size
 from agentface.view.tiers import tier_named
 from agentface.view.wrinkles import WrinkleAtlas
@@ -251,9 +253,12 @@ class Renderer:
         covered = 0.55 * hair.brow_density * BrowLine(model).density(model.vertices)
         if hair.style != "none":
             covered = np.maximum(covered, hidden(model, Hairline(model, hair.hairline), hair))
+        shade = hair_shade(model, hair)
+        if hair.style in PARTED:
+            shade = np.maximum(shade, edge_shade(model, hair))
         dressed = {
             "complexion": complexion(model, np.asarray(np.clip(covered, 0, 1), np.float32), self.look.skin.stubble),
-            "ambient": (folds(model) * (1 - hair_shade(model, hair)[:, None])).astype(np.float32),
+            "ambient": (folds(model) * (1 - shade[:, None])).astype(np.float32),
             "lit_at_rest": self._lit_at_rest(normals),
         }
         if self._picture is not None:

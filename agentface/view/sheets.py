@@ -34,6 +34,8 @@ _BESIDE = 0.0008
 """Metres from the parting where hair starts."""
 _AT_PARTING, _RISE = 0.25, 0.045
 """How high hair lies where it starts, as a part of its thickness, and the metres over which it rises from there."""
+_EDGE_SHADE, _SHADE_REACH = 0.6, 0.011
+"""How much light the front edge keeps off the skin below it, and within how many metres."""
 _LOCKS = 13
 _WIDTHS = 0.3, 1.7
 """Of the spaces between columns, in locks, as parts of their mean."""
@@ -42,6 +44,8 @@ _LOWEST = 0.0035
 """Metres over the hull, which is smoother than the head."""
 _AWAY, _TO_THE_FRONT = 0.004, 2.0
 """Metres that single hairs leave a sheet; the exponent with which their columns gather at the face."""
+_INSIDE_BELOW = 0.045
+"""Metres over the centre: below it hair stands off forehead, face and neck, and is seen from inside too."""
 _COVERAGE = 0x809E, 0x809F
 """GL_SAMPLE_ALPHA_TO_COVERAGE, GL_SAMPLE_ALPHA_TO_ONE."""
 _TUCKED = 0.2
@@ -105,6 +109,15 @@ def _paths(model: HeadModel, look: HairLook, hull: Hull, sign: float) -> Doubles
     fall = arc[:, -1:] + drop * [0.0, 1.0, 0.0]
     path = np.concatenate([arc, hull.hold(fall, 0.0, 0.0)], axis=1)
     return hull.push_out(smoothed(path, _SMOOTHINGS), 0.0)
+
+
+def edge_shade(model: HeadModel, look: HairLook) -> Doubles:
+    """``(V,)`` 0..1: the part of the surroundings' light that hair at the face keeps off the skin beside it."""
+    hull, away = Hull(model, ears=True), np.full(len(model.vertices), np.inf)
+    for sign in (1.0, -1.0):
+        edge = _paths(model, look, hull, sign)[0]
+        away = np.minimum(away, np.linalg.norm(model.vertices[:, None] - edge, axis=2).min(axis=1))
+    return np.asarray(_EDGE_SHADE * np.exp(-((away / _SHADE_REACH) ** 2)))
 
 
 def parting_line(model: HeadModel, look: HairLook, hull: Hull) -> Doubles:
@@ -185,7 +198,7 @@ class SheetArray:
     """Sheets on the GPU; they turn with the head."""
 
     def __init__(self, context: Any, program: Any, grown: list[Sheet], model: HeadModel, centre: Doubles) -> None:
-        """``centre`` m: hair above it has the head behind it and is seen from outside only."""
+        """``centre`` m: hair well above it has the head behind it and is seen from outside only."""
         self._context, self._program, self._centre = context, program, centre
         meshes = [sheet.mesh() for sheet in grown]
         firsts = np.cumsum([0, *(len(rows) for rows, _ in meshes)])
@@ -204,7 +217,7 @@ class SheetArray:
         self._draw("back", self._drawn[0].vertices)
 
     def draw_inside(self) -> None:
-        """Draw what the eye of the last ``draw`` sees from inside, after the skin: hair that hangs beside the neck."""
+        """Draw what the eye of the last ``draw`` sees from inside, after the skin: hair beside face and neck."""
         self._draw("front", self._drawn[1])
 
     def _draw(self, culled: str, count: int) -> None:
@@ -228,6 +241,6 @@ class SheetArray:
                 triangles = triangles[before_skin(places, self._skin, middle_of(sector))[triangles].any(axis=1)]
             ordered = triangles[np.argsort(places[triangles, 1].min(axis=1), kind="stable")]
             buffer = self._context.buffer(ordered.tobytes())
-            hanging = int((places[triangles, 1].min(axis=1) < 0.0).sum())
+            hanging = int((places[triangles, 1].min(axis=1) < _INSIDE_BELOW).sum())
             self._arrays[sector] = self._context.vertex_array(self._program, self._layout, buffer), 3 * hanging
         return self._arrays[sector]

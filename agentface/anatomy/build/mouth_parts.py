@@ -21,8 +21,16 @@ _SMALLER = (0.90, 1.02, 0.9)
 # the rows meet edge to edge, 3.5 mm below where the lips touch, so that a parted mouth shows the upper teeth.
 _ARCH_WIDTH, _SHOW_UPPER, _SINK_LOWER = 0.86, 0.036, 0.082
 _ACROSS = np.array([-1.0, -0.86, -0.5, 0.0, 0.5, 0.86, 1.0])
-# a crown's front from behind its edge to the gum: where, how wide, how far forward, both as parts
-_ROWS = ((0.03, 0.80, -1.4), (0.0, 0.86, 0.35), (0.10, 0.98, 0.75), (0.42, 1.03, 1.0), (1.0, 0.90, 0.75))
+# a crown from the gum behind it over its edge to the gum before it: where, how wide, how far forward, both as parts
+_ROWS = (
+    (1.0, 0.76, -2.6),
+    (0.40, 0.82, -2.2),
+    (0.03, 0.80, -1.4),
+    (0.0, 0.86, 0.35),
+    (0.10, 0.98, 0.75),
+    (0.42, 1.03, 1.0),
+    (1.0, 0.90, 0.75),
+)
 _TONGUE_FLAT, _TONGUE_BACK = 0.72, 0.03
 """At rest it lies low behind the lower teeth."""
 
@@ -66,7 +74,7 @@ def dental_arch(strip: Doubles, *, upper: bool) -> PartMesh:
 
 
 def _crown(at: Doubles, across: Doubles, size: tuple[float, float, float], out: float) -> PartMesh:
-    """The front of a tooth with its edge; nobody sees it from behind."""
+    """A tooth down to its gum, open below it."""
     width, height, point = size
     outward = np.cross(across, [0.0, 1.0, 0.0])
     outward *= np.sign(outward[2] + 1e-9 + 0.3 * outward[0] * np.sign(at[0]))
@@ -84,7 +92,8 @@ def _crown(at: Doubles, across: Doubles, size: tuple[float, float, float], out: 
         )
     positions = np.concatenate(rows)
     faces = np.array(_tube(len(_ACROSS), len(rows), closed=False), np.int32)
-    a, b, c = (positions[faces[:, i]] for i in range(3))
+    front = faces[-2 * (len(_ACROSS) - 1) :]
+    a, b, c = (positions[front[:, i]] for i in range(3))
     inward = (np.cross(b - a, c - a) @ outward).sum() < 0
     faces = faces[:, ::-1] if inward else faces
     return PartMesh(positions, faces, np.tile([1.0, 0, 0, 0], (len(positions), 1)))
