@@ -14,7 +14,7 @@ from agentface.anatomy import asymmetry as own
 from agentface.anatomy.glb import MeshArrays, Shape, read_glb, texture_coordinates
 from agentface.anatomy.landmarks import Landmarks, load_landmarks
 from agentface.anatomy.muscle_set import MuscleSet
-from agentface.anatomy.muscles import MusclesFile, place_muscles, read_muscles
+from agentface.anatomy.muscles import Borders, MusclesFile, place_muscles, read_muscles
 from agentface.anatomy.normals import vertex_normals
 from agentface.anatomy.regions import Regions, load_regions
 from agentface.anatomy.rings import EyelidsFile, LipsFile, load_rings
@@ -115,7 +115,12 @@ class HeadModel:
     @cached_property
     def muscles(self) -> MuscleSet:
         """The vector muscles in metres."""
-        return place_muscles(self.muscles_file, self.landmarks, self.regions, self.vertices, self.triangles)
+        return place_muscles(self.muscles_file, self.landmarks, self.borders, self.vertices)
+
+    @cached_property
+    def borders(self) -> Borders:
+        """How far each vertex lies inside a territory."""
+        return Borders(self.regions, self.vertices, self.triangles)
 
     @cached_property
     def normals(self) -> Floats:
@@ -126,15 +131,14 @@ class HeadModel:
     def volumes(self) -> tuple[PlacedVolume, ...]:
         """The volumes; none moves a lid's wet margin or the inside of the mouth."""
         movable = 1.0 - np.clip(2.0 * self.material[:, 1:3].max(axis=1), 0.0, 1.0)
-        skin = self.vertices, self.normals, self.triangles
-        return place_volumes(self.volumes_file, self.landmarks, self.regions, skin, movable)
+        skin = self.vertices, self.normals
+        return place_volumes(self.volumes_file, self.landmarks, self.borders, skin, movable)
 
     @cached_property
     def trains(self) -> tuple[PlacedTrain, ...]:
         """The trains of wrinkles; none rises on the lips, on a lid's wet margin or in the mouth."""
         smooth = 1.0 - np.clip(2.0 * self.material[:, :3].max(axis=1), 0.0, 1.0)
-        return place_trains(self.muscles, self.muscles_file, self.wrinkles_file, self.landmarks, self.regions,
-                            self.vertices, self.triangles, smooth)  # fmt: skip
+        return place_trains(self.muscles, self.muscles_file, self.wrinkles_file, self.landmarks, self.borders, smooth)
 
     @cached_property
     def uv(self) -> Floats:

@@ -117,15 +117,13 @@ def _check_row(document: Document, name: str, row: dict[str, Any]) -> None:
         document.fault((*where, "fall_finish"), f"more than fall_start, {start}", str(finish))
 
 
-def place_muscles(
-    file: MusclesFile, landmarks: Landmarks, regions: Regions, vertices: Floats, triangles: Indices
-) -> MuscleSet:
+def place_muscles(file: MusclesFile, landmarks: Landmarks, borders: Borders, vertices: Floats) -> MuscleSet:
     """The muscles of a face in metres, in the order of ``VECTOR_MUSCLES``."""
     unit = landmarks.eye_separation
     rows = [(file.muscles[name[:-2]], name[-1]) for name in VECTOR_MUSCLES]
     origin = np.array([anchor_point(row.origin, side, landmarks) for row, side in rows])
     insertion = np.array([anchor_point(row.insertion, side, landmarks) for row, side in rows])
-    reach = border_weights(file, landmarks, regions, vertices, triangles)
+    reach = border_weights(file, borders, unit)
     return MuscleSet(
         names=VECTOR_MUSCLES,
         origin=origin,
@@ -139,12 +137,9 @@ def place_muscles(
     )
 
 
-def border_weights(
-    file: MusclesFile, landmarks: Landmarks, regions: Regions, vertices: Floats, triangles: Indices
-) -> Floats:
+def border_weights(file: MusclesFile, borders: Borders, unit: float) -> Floats:
     """``(M, V)`` weights of the muscles in the order of ``VECTOR_MUSCLES``: what each may move, faded at the border."""
-    borders = Borders(regions, vertices, triangles)
-    return np.stack([borders.reach(file.muscles[name[:-2]], landmarks.eye_separation) for name in VECTOR_MUSCLES])
+    return np.stack([borders.reach(file.muscles[name[:-2]], unit) for name in VECTOR_MUSCLES])
 
 
 def off_the_bone(vertices: Floats | Doubles, origin: Doubles, insertion: Doubles) -> Floats:
@@ -163,7 +158,7 @@ def anchor_point(anchor: Anchor, side: str, landmarks: Landmarks) -> Doubles:
 
 
 class Borders:
-    """Distances along the skin to the border of a territory."""
+    """Distances along the skin to the border of a territory; those that were asked for once are known."""
 
     def __init__(self, regions: Regions, vertices: Floats, triangles: Indices) -> None:
         self._regions = regions

@@ -16,7 +16,7 @@ from pydantic import Field, model_validator
 
 from agentface.anatomy.landmarks import LANDMARKS, PAIRED_LANDMARKS, Landmarks
 from agentface.anatomy.muscles import Anchor, Borders, Territory, anchor_point
-from agentface.anatomy.regions import HALF_REGIONS, SUB_REGIONS, Regions
+from agentface.anatomy.regions import HALF_REGIONS, SUB_REGIONS
 from agentface.config import Document, Table
 from agentface.conventions import SIDES, Floats, Indices
 from agentface.errors import did_you_mean
@@ -108,8 +108,8 @@ def _check_row(document: Document, where: tuple[str, str], row: dict[str, Any]) 
 def place_volumes(
     file: VolumesFile,
     landmarks: Landmarks,
-    regions: Regions,
-    skin: tuple[Floats, Floats, Indices],
+    borders: Borders,
+    skin: tuple[Floats, Floats],
     movable: Floats,
 ) -> tuple[PlacedVolume, ...]:
     """The volumes of a face, left before right.
@@ -117,12 +117,11 @@ def place_volumes(
     Args:
         file: the table.
         landmarks: of the face.
-        regions: of the face.
-        skin: its vertices ``(V, 3)`` m and unit normals at rest, its triangles.
+        borders: of its territories.
+        skin: its vertices ``(V, 3)`` m and unit normals at rest.
         movable: ``(V,)`` 0..1, how far any volume may move a vertex.
     """
-    vertices, normals, triangles = skin
-    borders, unit = Borders(regions, vertices, triangles), landmarks.eye_separation
+    (vertices, normals), unit = skin, landmarks.eye_separation
     placed = []
     for name, row in file.volumes.items():
         for side in SIDES:

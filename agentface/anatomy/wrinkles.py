@@ -15,10 +15,10 @@ from pydantic import Field
 from agentface.anatomy.landmarks import LANDMARKS, PAIRED_LANDMARKS, Landmarks
 from agentface.anatomy.muscle_set import MuscleSet
 from agentface.anatomy.muscles import Anchor, Borders, MusclesFile, Territory, Wrinkles, anchor_point
-from agentface.anatomy.regions import HALF_REGIONS, SUB_REGIONS, Regions
+from agentface.anatomy.regions import HALF_REGIONS, SUB_REGIONS
 from agentface.anatomy.trains import DrawnTrain, Train, ZoneTrain
 from agentface.config import Document, Table
-from agentface.conventions import SIDES, Doubles, Floats, Indices
+from agentface.conventions import SIDES, Doubles, Floats
 from agentface.errors import InvalidValueError, did_you_mean
 from agentface.parameters import MUSCLES, VECTOR_MUSCLES, indices_of
 
@@ -144,9 +144,7 @@ def place_trains(
     muscles_file: MusclesFile,
     file: WrinklesFile,
     landmarks: Landmarks,
-    regions: Regions,
-    vertices: Floats,
-    triangles: Indices,
+    borders: Borders,
     raisable: Floats,
 ) -> tuple[PlacedTrain, ...]:
     """The trains of a face: those of its vector muscles, then those of ``wrinkles.yaml``, left before right.
@@ -159,7 +157,6 @@ def place_trains(
         for i, name in enumerate(VECTOR_MUSCLES)
         if (row := muscles_file.muscles[name[:-2]]).wrinkles is not None
     ]
-    borders = Borders(regions, vertices, triangles)
     for name, drawn in file.trains.items():
         for side in SIDES:
             indices = tuple(_index(muscle, side) for muscle in drawn.muscles)

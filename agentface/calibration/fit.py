@@ -57,7 +57,7 @@ class Fitter:
     def __init__(self, model: HeadModel, anatomy: MusclesFile, group: Group) -> None:
         self.model, self.anatomy, self.group = model, anatomy, group
         self.unit = model.landmarks.eye_separation
-        weights = border_weights(anatomy, model.landmarks, model.regions, model.vertices, model.triangles)
+        weights = border_weights(anatomy, model.borders, model.landmarks.eye_separation)
         names = [f"{name}_{side}" for name in group.muscles for side in SIDES]
         self._reach_all = weights[[VECTOR_MUSCLES.index(name) for name in names]].astype(np.float64)
         half = np.flatnonzero((model.vertices[:, 0] > -1e-6) & (self._touched() > 0)).astype(np.int32)

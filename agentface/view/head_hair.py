@@ -15,7 +15,7 @@ from agentface.view.hair import Hairline
 from agentface.view.hull import Hull
 from agentface.view.look import HairLook
 from agentface.view.programs import Programs
-from agentface.view.sheets import Sheet, SheetArray, flyaways, parting_line, sheets
+from agentface.view.sheets import Sheet, SheetArray, edge_shade, flyaways, parting_line, sheets
 from agentface.view.strands import StrandArray
 from agentface.view.styles import PARTED, STYLES
 from agentface.view.tiers import tier_named
@@ -24,6 +24,8 @@ _SEED = 20
 _STREAKS = {"fast": 6.0, "portrait": 7.0}
 _NARROWEST = {"fast": 0.9, "portrait": 0.5}
 _GLOSS = {"cropped": 0.25, "swept": 0.8, "bob": 0.9, "bun": 0.9}
+_NO_PARTING = 1.0, 1.0, 1.0, 1.0
+"""The uniform ``parting`` of ``shaders/cap.frag.glsl``, far from the head."""
 
 
 class HeadHair:
@@ -37,16 +39,23 @@ class HeadHair:
         self._strands: dict[str, StrandArray] = {}
         cap["hair_colour"].value = tuple(look.colour)
         cap["coils"].value = float(look.style == "cropped")
-        cap["parting"].value = _parting(model, look)
+        cap["parting"].value = _NO_PARTING
         self._centre = np.array([0.0, 0.4 * model.landmarks.eye_separation, -0.012])
         strand["hair_centre"].value = tuple(self._centre)
         self._sheets: SheetArray | None = None
         self._grown: list[Sheet] = []
         if look.style in PARTED:
-            self._grown = sheets(model, look, np.random.default_rng(_SEED))
+            hull = Hull(model, ears=True)
+            line = parting_line(model, look, hull)
+            cap["parting"].value = tuple(line[[0, 0, -1, -1], [0, 2, 0, 2]])
+            self._grown = sheets(model, look, hull, np.random.default_rng(_SEED))
             self._sheets = SheetArray(context, sheet, self._grown, model, self._centre)
             sheet["hair_colour"].value = tuple(look.colour)
         programs.set({"gloss": _GLOSS[look.style]})
+
+    def shade(self, skin: Floats) -> Doubles:
+        """``(V,)`` 0..1: the part of the surroundings' light that hair at the face keeps off the ``skin (V, 3)``."""
+        return edge_shade(self._grown, skin)
 
     def draw_solid(self, quality: str, camera: Camera, head: Floats) -> None:
         """Draw what hides what is behind it, seen by ``camera`` with the head turned by ``head (4, 4)``."""
@@ -84,11 +93,3 @@ class HeadHair:
                 strands = grow(model, model.normals, look, quality, rng)
             self._strands[quality] = StrandArray(self._context, self._program, strands, model, self._centre)
         return self._strands[quality]
-
-
-def _parting(model: HeadModel, look: HairLook) -> tuple[float, float, float, float]:
-    """The uniform ``parting`` of ``shaders/cap.frag.glsl``; far from the head where there is none."""
-    if look.style not in PARTED:
-        return 1.0, 1.0, 1.0, 1.0
-    line = parting_line(model, look, Hull(model, ears=True))
-    return float(line[0, 0]), float(line[0, 2]), float(line[-1, 0]), float(line[-1, 2])

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import product
+
 import numpy as np
 
 from agentface.conventions import Bytes, Doubles
@@ -18,18 +20,17 @@ def pore_volume(rng: np.random.Generator) -> Bytes:
     Plates are the cells of scattered points (Worley 1996, "A cellular texture basis function"): furrows where two of
     them are equally near, a pit at each point.
     """
-    step = 1.0 / _CELLS
-    corners = np.stack(np.meshgrid(*[np.arange(_CELLS)] * 3, indexing="ij"), axis=-1).reshape(-1, 3)
-    points = (corners + rng.random(corners.shape)) * step
-    depth = rng.uniform(*_PIT_DEPTH, len(points)) ** 2
-    at = np.stack(np.meshgrid(*[(np.arange(SIDE) + 0.5) / SIDE] * 3, indexing="ij"), axis=-1)
+    corners = np.stack(np.meshgrid(*[np.arange(_CELLS)] * 3, indexing="ij"), axis=-1)
+    points = corners + rng.random(corners.shape)
+    depth = rng.uniform(*_PIT_DEPTH, corners.shape[:3]) ** 2
+    at = np.stack(np.meshgrid(*[(np.arange(SIDE) + 0.5) * _CELLS / SIDE] * 3, indexing="ij"), axis=-1)
     nearest, second, pit = (np.full(at.shape[:3], value) for value in (np.inf, np.inf, 0.0))
-    for point, deep in zip(points, depth, strict=True):
-        away = np.abs(at - point)
-        distance = np.sqrt((np.minimum(away, 1.0 - away) ** 2).sum(axis=-1)) / step
+    for beside in product((-1, 0, 1), repeat=3):
+        away = np.abs(at - _by_texel(np.roll(points, beside, (0, 1, 2))))
+        distance = np.sqrt((np.minimum(away, _CELLS - away) ** 2).sum(axis=-1))
         closer = distance < nearest
         second = np.where(closer, nearest, np.minimum(second, distance))
-        pit = np.where(closer, deep, pit)
+        pit = np.where(closer, _by_texel(np.roll(depth, beside, (0, 1, 2))), pit)
         nearest = np.where(closer, distance, nearest)
     height = 1.0 - np.exp(-(((second - nearest) / _FURROW) ** 2)) - pit * np.exp(-((nearest / _PIT) ** 2))
     height = _softened(height)
@@ -38,6 +39,13 @@ def pore_volume(rng: np.random.Generator) -> Bytes:
     height = (height - height.min()) / np.ptp(height)
     rows = np.concatenate([128.0 + 127.0 * slopes, 255.0 * height[..., None]], axis=-1)
     return np.round(rows).astype(np.uint8).transpose(2, 1, 0, 3)
+
+
+def _by_texel(cells: Doubles) -> Doubles:
+    """What the plates have, for each texel in them."""
+    for axis in range(3):
+        cells = np.repeat(cells, SIDE // _CELLS, axis)
+    return cells
 
 
 def _softened(height: Doubles) -> Doubles:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -26,11 +27,9 @@ from agentface.view.parts import Eyeball, RigidPart
 from agentface.view.programs import FRAME_BINDING, Programs
 from agentface.view.ribbons import HairArray
 from agentface.view.shadow import KeyShadow
-from agentface.view.sheets import edge_shade
 from agentface.view.shirt import shirt
 from agentface.view.skin import Skin, SkinFields, SkinMeshes
 from agentface.view.skin_image import skin_texture
-from agentface.view.styles import PARTED
 from agentface.view.targets import Targets, checked_size
 from agentface.view.tiers import tier_named
 from agentface.view.wrinkles import WrinkleAtlas
@@ -66,14 +65,14 @@ class Renderer:
         self._frame = self.context.buffer(reserve=_FRAME_BYTES)
         rng = np.random.default_rng(_SEED)
         self._noise = self.context.texture3d((SIDE,) * 3, 4, noise_volume(rng).tobytes())
-        self._pores = self.context.texture3d((pores.SIDE,) * 3, 4, pores.pore_volume(rng).tobytes())
         self._picture = skin_texture(self.context, self.look)
         self._programs = Programs(self.context, textured=self._picture is not None)
         self._screens = {name: self.context.vertex_array(self._programs[name], []) for name in ("background", "copy")}
         lips = FineLips(model, _LIP_CUTS)
         self._fields = SkinFields(self.context, model, lips)
         self._wrinkles = WrinkleAtlas(self.context, model, unit(self.look.lights.key.towards), rng)
-        normals = model.normals
+        normals, hair = model.normals, self.look.hair
+        self._head_hair = None if hair.style == "none" else HeadHair(self.context, self._programs, model, hair)
         self._shadow = KeyShadow(self.context, self._programs.depth, model)
         self._meshes = SkinMeshes(self.context, model, lips, self._dressed(normals))
         self._skins: dict[tuple[str, int], Skin] = {}
@@ -83,14 +82,10 @@ class Renderer:
         self._linings = [
             AnchoredArray(self.context, self._programs["lining"], mesh, model.vertices) for mesh in eye_linings(model)
         ]
-        hair = self.look.hair
         self._hairs = [
             HairArray(self.context, self._programs["ribbon"], brow_hairs(model, normals, hair, rng), 0.35),
             HairArray(self.context, self._programs["ribbon"], lash_hairs(model, normals, hair, rng), 0.1),
         ]
-        self._head_hair: HeadHair | None = None
-        if hair.style != "none":
-            self._head_hair = HeadHair(self.context, self._programs, model, hair)
         front = float(model.landmarks["upper_lip_middle"][2])
         self._programs.wear(self.look)
         self._programs.set({"mouth_front": front, "atlas_height": self._wrinkles.height, "iris_radius": _IRIS_RADIUS})
@@ -144,11 +139,11 @@ class Renderer:
         self.upload_skin(geometry)
         self._fields.texture.use(0)
         self._noise.use(1)
-        self._pores.use(5)
         self._wrinkles.texture.use(3)
         if self._picture is not None:
             self._picture.use(4)
         if tier.fine:
+            self._pores.use(5)
             self._shadow.draw()
         self._shadow.use(2)
         self._clear(targets, alpha=alpha)
@@ -183,6 +178,11 @@ class Renderer:
             onto.use()
             targets.light.use(0)
             self._screens["copy"].render(moderngl.TRIANGLES, 3)
+
+    @cached_property
+    def _pores(self) -> Any:
+        volume = pores.pore_volume(np.random.default_rng(_SEED))
+        return self.context.texture3d((pores.SIDE,) * 3, 4, volume.tobytes())
 
     def upload_skin(self, geometry: FaceGeometry) -> None:
         """Hand the skin of the frame to the GPU; ``draw`` does it itself."""
@@ -254,8 +254,8 @@ class Renderer:
         if hair.style != "none":
             covered = np.maximum(covered, hidden(model, Hairline(model, hair.hairline), hair))
         shade = hair_shade(model, hair)
-        if hair.style in PARTED:
-            shade = np.maximum(shade, edge_shade(model, hair))
+        if self._head_hair is not None:
+            shade = np.maximum(shade, self._head_hair.shade(model.vertices))
         dressed = {
             "complexion": complexion(model, np.asarray(np.clip(covered, 0, 1), np.float32), self.look.skin.stubble),
             "ambient": (folds(model) * (1 - shade[:, None])).astype(np.float32),

@@ -83,9 +83,9 @@ class Sheet:
         return rows, triangles
 
 
-def sheets(model: HeadModel, look: HairLook, rng: np.random.Generator) -> list[Sheet]:
-    """The sheets of hair that falls from a parting, the outer ones first."""
-    style, hull = STYLES[look.style], Hull(model, ears=True)
+def sheets(model: HeadModel, look: HairLook, hull: Hull, rng: np.random.Generator) -> list[Sheet]:
+    """The sheets of hair that falls from a parting over the ``hull`` with its ears, the outer ones first."""
+    style = STYLES[look.style]
     thickness = style.thickness * look.volume * model.landmarks.eye_separation / REFERENCE_EYES
     grown = []
     for side in SIDES:
@@ -111,13 +111,13 @@ def _paths(model: HeadModel, look: HairLook, hull: Hull, sign: float) -> Doubles
     return hull.push_out(smoothed(path, _SMOOTHINGS), 0.0)
 
 
-def edge_shade(model: HeadModel, look: HairLook) -> Doubles:
-    """``(V,)`` 0..1: the part of the surroundings' light that hair at the face keeps off the skin beside it."""
-    hull, away = Hull(model, ears=True), np.full(len(model.vertices), np.inf)
-    for sign in (1.0, -1.0):
-        edge = _paths(model, look, hull, sign)[0]
-        away = np.minimum(away, np.linalg.norm(model.vertices[:, None] - edge, axis=2).min(axis=1))
-    return np.asarray(_EDGE_SHADE * np.exp(-((away / _SHADE_REACH) ** 2)))
+def edge_shade(grown: list[Sheet], skin: Floats) -> Doubles:
+    """``(V,)`` 0..1: how much of the surroundings' light hair at the face keeps off the ``skin (V, 3)`` beside it."""
+    away = np.full(len(skin), np.inf, np.float32)
+    for sheet in grown:
+        if sheet.points.shape[1] == _ROWS:
+            away = np.minimum(away, np.linalg.norm(skin[:, None] - sheet.points[0], axis=2).min(axis=1))
+    return np.asarray(_EDGE_SHADE * np.exp(-((away / _SHADE_REACH) ** 2)), np.float64)
 
 
 def parting_line(model: HeadModel, look: HairLook, hull: Hull) -> Doubles:

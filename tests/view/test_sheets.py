@@ -16,12 +16,12 @@ def grown():
     model = head_model("amber")
     look = load_look(model).hair
     assert look.style in PARTED
-    return model, look, sheets(model, look, np.random.default_rng(2))
+    return model, look, sheets(model, look, Hull(model, ears=True), np.random.default_rng(2))
 
 
 def test_the_same_generator_gives_the_same_sheets(grown):
     model, look, first = grown
-    for one, other in zip(first, sheets(model, look, np.random.default_rng(2)), strict=True):
+    for one, other in zip(first, sheets(model, look, Hull(model, ears=True), np.random.default_rng(2)), strict=True):
         np.testing.assert_array_equal(one.points, other.points)
         np.testing.assert_array_equal(one.places, other.places)
 
@@ -55,7 +55,9 @@ def test_they_fall_as_long_as_the_look_says(grown):
     model, look, found = grown
     lowest = min(sheet.points[..., 1].min() for sheet in found)
     assert lowest == pytest.approx(look.length * model.landmarks["menton"][1], abs=0.02)
-    short = sheets(model, look.model_copy(update={"length": 0.5 * look.length}), np.random.default_rng(2))
+    short = sheets(
+        model, look.model_copy(update={"length": 0.5 * look.length}), Hull(model, ears=True), np.random.default_rng(2)
+    )
     assert min(sheet.points[..., 1].min() for sheet in short) > lowest + 0.02
 
 
