@@ -40,17 +40,17 @@ _LOCKS = 13
 _WIDTHS = 0.3, 1.7
 """Of the spaces between columns, in locks, as parts of their mean."""
 _RIDGE, _UNEVEN = 0.0016, 0.05
+"""Metres that a lock rises over the gaps beside it; the part by which the lengths of locks differ."""
 _LOWEST = 0.0035
 """Metres over the hull, which is smoother than the head."""
 _AWAY, _TO_THE_FRONT = 0.004, 2.0
 """Metres that single hairs leave a sheet; the exponent with which their columns gather at the face."""
 _INSIDE_BELOW = 0.045
 """Metres over the centre: below it hair stands off forehead, face and neck, and is seen from inside too."""
-_COVERAGE = 0x809E, 0x809F
-"""GL_SAMPLE_ALPHA_TO_COVERAGE, GL_SAMPLE_ALPHA_TO_ONE."""
 _TUCKED = 0.2
 """How high the front edge lies, as a part of the hair's thickness."""
-"""Metres that a lock rises over the gaps beside it; the part by which the lengths of locks differ."""
+_COVERAGE = 0x809E, 0x809F
+"""GL_SAMPLE_ALPHA_TO_COVERAGE, GL_SAMPLE_ALPHA_TO_ONE."""
 
 
 @dataclass(frozen=True, slots=True)
