@@ -131,6 +131,19 @@ def test_an_arch_has_fourteen_single_teeth_and_a_gum(upper):
     np.testing.assert_allclose(part.positions[tooth, 0].min(), -part.positions[tooth, 0].max(), atol=1e-6)
 
 
+@pytest.mark.parametrize("upper", [True, False])
+def test_a_tooth_is_seen_from_before_and_from_behind(upper):
+    strip = np.array([[x, y, 1.1 - 3 * x * x] for x in np.linspace(-0.32, 0.32, 20) for y in (6.5, 6.62)])
+    part = dental_arch(strip, upper=upper)
+    middle = [np.abs(part.positions[face, 0]).max() < 0.09 and part.material[face, 0].all() for face in part.triangles]
+    a, b, c = (part.positions[part.triangles[middle][:, corner]] for corner in range(3))
+    normal, place = np.cross(b - a, c - a), (a + b + c) / 3
+    before, behind = normal[:, 2] > 0, normal[:, 2] < 0
+    assert before.sum() > 10
+    assert behind.sum() > 10
+    assert place[before, 2].mean() > place[behind, 2].mean() + 0.02
+
+
 def test_an_eyeball_is_a_globe_with_a_cornea():
     part = eyeball(np.array([0.3, 7.0, 1.2]), 0.14)
     distance = np.linalg.norm(part.positions - [0.3, 7.0, 1.2], axis=1)

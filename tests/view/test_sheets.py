@@ -6,7 +6,7 @@ import pytest
 from agentface.view.hair import Hairline
 from agentface.view.hull import Hull
 from agentface.view.look import load_look
-from agentface.view.sheets import flyaways, parting_line, sheets
+from agentface.view.sheets import edge_shade, flyaways, parting_line, sheets
 from agentface.view.styles import PARTED, Amount
 from tests.heads import head_model
 
@@ -83,3 +83,12 @@ def test_single_hairs_leave_the_outer_sheets_and_stay_near(grown):
     assert max(away) < 0.02
     behind = Hairline(model, look.hairline).behind(growth.points[:, 0])
     assert np.median(behind) > 0.0
+
+
+def test_hair_at_the_face_shades_the_skin_beside_it_and_not_the_middle_of_the_face(grown):
+    model, _, found = grown
+    shade = edge_shade(found, model.vertices)
+    assert shade.max() > 0.4
+    for name in ("nose_tip", "glabella", "menton", "mouth_corner_l"):
+        assert shade[np.linalg.norm(model.vertices - model.landmarks[name], axis=1).argmin()] < 0.01, name
+    assert not edge_shade([], model.vertices).any()
