@@ -23,6 +23,7 @@ def crown_places(positions: Floats, triangles: Indices, tooth: Floats) -> Floats
         middle = crown[:, [0, 2]].mean(0) - [0.0, positions[:, 2].min()]
         across = np.array([middle[1], -middle[0]]) / np.linalg.norm(middle)
         aside = flat @ across
+        aside -= 0.5 * (aside.min() + aside.max())
         up = crown[:, 1] - crown[:, 1].min()
         up /= up.max()
         roots_above = not len(gum) or gum.mean() > crown[:, 1].mean()
