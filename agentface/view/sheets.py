@@ -20,9 +20,9 @@ from agentface.view.strands import middle_of, sector_of, skin_round
 from agentface.view.styles import REFERENCE_EYES, STYLES, Amount, parting_of, whorl_of
 from agentface.view.visible import before_skin
 
-_COLUMNS, _ROWS = 60, 22
-_INNER_FROM, _INNER_ROWS = 0.4, 8
-"""The inner sheet is seen between tips only."""
+_COLUMNS, _ROWS = 48, 20
+_INNER_FROM, _INNER_ROWS, _INNER_BEHIND = 0.5, 8, 4
+"""The inner sheet is seen between tips only: where along the hair it starts, its rows, its first column."""
 _LAYERS = (1.0, 0.6)
 """Where between the skin and the outside of the hair the sheets lie."""
 _ON_PARTING = 0.45
@@ -90,7 +90,10 @@ def sheets(model: HeadModel, look: HairLook, hull: Hull, rng: np.random.Generato
     grown = []
     for side in SIDES:
         paths = _paths(model, look, hull, 1.0 if side == SIDES[0] else -1.0)
-        grown += [_sheet(hull, look, paths, thickness, layer, rng) for layer in _LAYERS]
+        grown += [
+            _sheet(hull, look, paths[0 if layer == 1.0 else _INNER_BEHIND :], thickness, layer, rng)
+            for layer in _LAYERS
+        ]
     return [*grown[:: len(_LAYERS)], *grown[1 :: len(_LAYERS)]]
 
 
@@ -145,7 +148,7 @@ def _roots(model: HeadModel, look: HairLook, hull: Hull, sign: float) -> Doubles
 def _sheet(
     hull: Hull, look: HairLook, paths: Doubles, thickness: float, layer: float, rng: np.random.Generator
 ) -> Sheet:
-    widths = rng.uniform(*_WIDTHS, _COLUMNS - 1)
+    widths = rng.uniform(*_WIDTHS, len(paths) - 1)
     across = np.concatenate([[0.0], np.cumsum(widths)]) * _LOCKS / widths.sum()
     t = np.linspace(0.0, 1.0, _ROWS) ** 1.3 if layer == 1.0 else np.linspace(_INNER_FROM, 1.0, _INNER_ROWS)
     uneven = np.interp(across, np.arange(_LOCKS + 1), rng.uniform(0.0, 1.0, _LOCKS + 1))
@@ -154,7 +157,7 @@ def _sheet(
     tucked = _TUCKED + (1.0 - _TUCKED) * smoothstep(0.0, 1.5, across)[:, None]
     risen = _AT_PARTING + (1.0 - _AT_PARTING) * np.sin(0.5 * np.pi * np.clip(along / _RISE, 0.0, 1.0))
     height = thickness * layer * tucked * risen + _RIDGE * np.sqrt(t) * ridge
-    height = np.maximum(height, 0.001 + _LOWEST * smoothstep(0.0, 0.03, along))
+    height = np.maximum(height, 0.001 + layer * _LOWEST * smoothstep(0.0, 0.03, along))
     points = points + height[..., None] * hull.outward(points)
     if look.curl:
         points = points + 0.006 * look.curl * waves(hull, points, along, uneven)
