@@ -212,10 +212,12 @@ class SheetArray:
         self._skin = skin_round(model, centre)
         self._arrays: dict[tuple[int, int, int] | None, tuple[Any, int]] = {}
         self._drawn: tuple[Any, int] = self._seen_from(None)
+        self._flags: tuple[int, ...] = ()
 
     def draw(self, eye: Doubles, *, fine: bool) -> None:
         """Draw what ``eye``, in the model's axes, sees from outside; ``fine``: into several samples a pixel."""
         self._program["least_cover"].value = 0.02 if fine else 0.5
+        self._flags = _COVERAGE if fine else ()
         self._drawn = self._seen_from(sector_of(eye - self._centre))
         self._draw("back", self._drawn[0].vertices)
 
@@ -227,10 +229,10 @@ class SheetArray:
         context, (array, _) = self._context, self._drawn
         context.cull_face = culled
         context.enable(context.CULL_FACE)
-        for flag in _COVERAGE:
+        for flag in self._flags:
             context.enable_direct(flag)
         array.render(vertices=count)
-        for flag in _COVERAGE:
+        for flag in self._flags:
             context.disable_direct(flag)
         context.disable(context.CULL_FACE)
         context.cull_face = "back"
