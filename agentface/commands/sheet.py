@@ -32,7 +32,9 @@ class Cell(NamedTuple):
 
     def pose(self, gains: Floats) -> FacePose:
         """What a face shows whose sides make ``gains (COUNT,)`` of an emotion."""
-        return type(self.felt)(self.felt.values * gains).replace(self.held)
+        from agentface.parameters import FacePose
+
+        return FacePose(self.felt.values * gains).replace(self.held)
 
 
 def _levels(_: click.Context, __: click.Parameter, value: str) -> list[float]:

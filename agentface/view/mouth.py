@@ -15,6 +15,7 @@ from agentface.view.teeth import crown_places
 
 _SHADED = 0.25  # of the light on the lower jaw, which the upper lip and the nose keep off
 _COLUMNS = np.linspace(0.2, 0.8, 7)  # where the gap is looked at: parts of the way from corner to corner
+_MIDDLE = len(_COLUMNS) // 2
 
 
 class Mouth:
@@ -31,7 +32,7 @@ class Mouth:
             for halves in ([ring.upper for ring in touching], [ring.lower for ring in touching])
         )
         self._bow = 1.0 - (2.0 * _COLUMNS - 1.0) ** 2  # an opening between two bows
-        self._at_rest = self._gap(model.vertices)
+        self._at_rest = self._gap(*self._edges(model.vertices))
 
     def draw(self, geometry: FaceGeometry) -> None:
         """Draw it as ``geometry`` has it."""
@@ -41,22 +42,17 @@ class Mouth:
         for name in ("teeth_lower", "tongue"):
             self._parts[name].draw(geometry.head @ geometry.jaw)
 
-    def light(self, geometry: FaceGeometry) -> float:
-        """The part of the light that reaches the teeth: all through a mouth open by a finger, little through a slit."""
-        opened = (self._gap(geometry.vertices) - self._at_rest) / (0.12 * self._model.landmarks.eye_separation)
-        return min(1.0, 0.03 + 0.97 * max(0.0, opened))
-
     def opening(self, geometry: FaceGeometry) -> dict[str, object]:
         """The uniforms of ``shaders/mouth.glsl``."""
         vertices = geometry.vertices
         half = 0.5 * float(vertices[self._corners[0], 0] - vertices[self._corners[1], 0])
         front = 0.5 * float(vertices[self._upper[0], 2].mean() + vertices[self._lower[0], 2].mean())
         corner = vertices[list(self._corners), 1:].mean(0)
-        upper, lower = (float(edge[len(edge) // 2]) for edge in self._edges(vertices))
-        middle, half_gap = 0.5 * (upper + lower), 0.5 * self._gap(vertices)
+        upper, lower = self._edges(vertices)
+        middle, gap = 0.5 * (float(upper[_MIDDLE]) + float(lower[_MIDDLE])), self._gap(upper, lower)
         return {
-            "mouth_light": self.light(geometry),
-            "mouth_opening": (middle + half_gap, middle - half_gap, abs(half), front),
+            "mouth_light": self._light(gap),
+            "mouth_opening": (middle + 0.5 * gap, middle - 0.5 * gap, abs(half), front),
             "mouth_bow": (front - float(corner[1]), float(corner[0]) - middle),
         }
 
@@ -64,9 +60,13 @@ class Mouth:
         """Heights of the lips' edges by column, m: of the rings that may touch, where least light comes through."""
         return vertices[self._upper, 1].min(axis=0), vertices[self._lower, 1].max(axis=0)
 
-    def _gap(self, vertices: Floats) -> float:
-        """How high the middle of an opening between two bows is that lets through as much as the lips do, m."""
-        upper, lower = self._edges(vertices)
+    def _light(self, gap: float) -> float:
+        """The part of the light that reaches the teeth: all through a mouth open by a finger, little through a slit."""
+        opened = (gap - self._at_rest) / (0.12 * self._model.landmarks.eye_separation)
+        return min(1.0, 0.03 + 0.97 * max(0.0, opened))
+
+    def _gap(self, upper: Floats, lower: Floats) -> float:
+        """How high the middle of an opening between two bows is that lets through as much as these edges do, m."""
         return float(np.maximum(upper - lower, 0.0) @ self._bow / (self._bow @ self._bow))
 
 

@@ -34,7 +34,7 @@ _BESIDE = 0.0008
 """Metres from the parting where hair starts."""
 _AT_PARTING, _RISE = 0.25, 0.045
 """How high hair lies where it starts, as a part of its thickness, and the metres over which it rises from there."""
-_EDGE_SHADE, _SHADE_REACH = 0.6, 0.011
+_EDGE_SHADE, _EDGE_REACH = 0.6, 0.011
 """How much light the front edge keeps off the skin below it, and within how many metres."""
 _LOCKS = 13
 _WIDTHS = 0.3, 1.7
@@ -117,10 +117,13 @@ def _paths(model: HeadModel, look: HairLook, hull: Hull, sign: float) -> Doubles
 def edge_shade(grown: list[Sheet], skin: Floats) -> Doubles:
     """``(V,)`` 0..1: how much of the surroundings' light hair at the face keeps off the ``skin (V, 3)`` beside it."""
     away = np.full(len(skin), np.inf, np.float32)
-    for sheet in grown:
-        if sheet.points.shape[1] == _ROWS:
-            away = np.minimum(away, np.linalg.norm(skin[:, None] - sheet.points[0], axis=2).min(axis=1))
-    return np.asarray(_EDGE_SHADE * np.exp(-((away / _SHADE_REACH) ** 2)), np.float64)
+    for sheet in _outer(grown):
+        away = np.minimum(away, np.linalg.norm(skin[:, None] - sheet.points[0], axis=2).min(axis=1))
+    return np.asarray(_EDGE_SHADE * np.exp(-((away / _EDGE_REACH) ** 2)), np.float64)
+
+
+def _outer(grown: list[Sheet]) -> list[Sheet]:
+    return grown[: len(SIDES)]
 
 
 def parting_line(model: HeadModel, look: HairLook, hull: Hull) -> Doubles:
@@ -179,7 +182,7 @@ def _resampled(paths: Doubles, t: Doubles, share: Doubles) -> tuple[Doubles, Dou
 
 def flyaways(grown: list[Sheet], amount: Amount, look: HairLook, rng: np.random.Generator) -> Growth:
     """Single hairs that leave the outer sheets: most of them frame the face."""
-    outer = [sheet for sheet in grown if sheet.points.shape[1] == _ROWS]
+    outer = _outer(grown)
     count, t = amount.hairs, np.linspace(0.0, 1.0, amount.points)
     column = np.floor(_COLUMNS * rng.random(count) ** _TO_THE_FRONT).astype(int)
     lines = np.stack([sheet.points for sheet in outer]).astype(np.float64)[rng.integers(0, len(outer), count), column]

@@ -84,7 +84,7 @@ def test_nothing_of_the_front_folds_over_that_is_seen_from_outside(name):
     lid_fold = np.isin(model.triangles, np.concatenate(folds)).any(axis=1)
     flipped = front & (areas(model) <= 0.0)
     assert not (flipped & ~(lip | mouth | wet | ear | nostrils | lid_fold)).any()
-    assert (flipped & lid_fold).sum() < 20, "only the underside of the skin that hangs over the lids"
+    assert (flipped & lid_fold).sum() <= 12, "only the underside of the skin that hangs over the lids"
     ambient = model.shade[model.triangles, 0].mean(axis=1)
     assert np.percentile(ambient[flipped & lip], 95) < 0.05, "of the lips only what they press together"
     assert (flipped & nostrils & ~(lip | mouth)).sum() < 60
