@@ -8,11 +8,11 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from agentface.anatomy.model import HeadModel, load_model
     from agentface.deform.geometry import FaceGeometry
     from agentface.emotion.state import EMOTIONS, EmotionState
     from agentface.errors import AgentFaceError
     from agentface.face import Face
+    from agentface.head.model import HeadModel, load_model
     from agentface.parameters import FacePose
 
     __version__: str
@@ -24,8 +24,8 @@ _HOMES = {
     "Face": "face",
     "FaceGeometry": "deform.geometry",
     "FacePose": "parameters",
-    "HeadModel": "anatomy.model",
-    "load_model": "anatomy.model",
+    "HeadModel": "head.model",
+    "load_model": "head.model",
 }
 
 __all__ = [

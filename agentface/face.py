@@ -11,14 +11,14 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from agentface.anatomy.model import HeadModel, load_model
+from agentface.clock import Clock, SystemClock
 from agentface.conventions import Bytes, check_duration, check_fraction, check_range
 from agentface.deform.geometry import FaceGeometry
 from agentface.emotion.explanation import Explanation
 from agentface.emotion.inference import default_inference
 from agentface.emotion.state import EMOTIONS, EmotionState, canonical
 from agentface.errors import InvalidValueError, UnknownNameError
-from agentface.motion.clock import Clock, SystemClock
+from agentface.head.model import HeadModel, load_model
 from agentface.motion.mixer import Mixer
 from agentface.parameters import MUSCLES, PARAMETERS, FacePose, parameter
 from agentface.resources import DEFAULT_FACE
@@ -146,7 +146,7 @@ class Face:
         A point too far aside is looked at as far as the eyes turn. Raises InvalidValueError for a point that is not
         in front of the eyes.
         """
-        from agentface.deform.eyes import toward
+        from agentface.deform.eyes.eyeballs import toward
 
         fade = check_duration("fade", fade)
         angles = zip(("gaze_yaw", "gaze_pitch", "gaze_vergence"), toward(self.model, point), strict=True)
@@ -243,7 +243,7 @@ class Face:
         Raises GraphicsError where the machine has no OpenGL.
         """
         if self._renderer is None:
-            from agentface.view.look import load_look
+            from agentface.head.look import load_look
             from agentface.view.renderer import Renderer
 
             self._renderer = Renderer(self.model, load_look(self.model, self._look))

@@ -1,4 +1,4 @@
-// What every program shares in one picture; written by agentface/view/frame.py (std140).
+// What every program shares in one picture; written by agentface/view/gl/uniforms.py (std140).
 const int LIGHTS = 4;
 
 layout(std140) uniform Frame {

@@ -1,4 +1,4 @@
-// Wrinkles finer than the mesh; the atlas is written by agentface/view/wrinkles.py.
+// Wrinkles finer than the mesh; the atlas is written by agentface/view/skin/wrinkle_atlas.py.
 #include "atlas.glsl"
 #include "relief.glsl"
 // signed roots of the slopes to the face's left and up, how near a crease is, what that makes of the picture at rest

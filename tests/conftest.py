@@ -18,7 +18,7 @@ def pytest_addoption(parser):
 def read_once():
     """Every face of a process takes the model, and every deformer the tables, that the first one made."""
     with pytest.MonkeyPatch.context() as patch:
-        for module in ("agentface.anatomy.model", "agentface.face"):
+        for module in ("agentface.head.model", "agentface.face"):
             patch.setattr(f"{module}.load_model", heads.uneven_model)
-        patch.setattr("agentface.deform.frame.prepare", heads.tables)
+        patch.setattr("agentface.deform.tables.prepare", heads.tables)
         yield

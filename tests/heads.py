@@ -5,11 +5,11 @@ from __future__ import annotations
 from functools import cache
 from pathlib import Path
 
-from agentface.anatomy.model import HeadModel, load_model
-from agentface.anatomy.muscle_set import MuscleSet
-from agentface.anatomy.muscles import MusclesFile
-from agentface.deform import frame
+from agentface.deform import tables as frame
 from agentface.deform.pipeline import GeometricDeformer
+from agentface.head.model import HeadModel, load_model
+from agentface.head.muscle_set import MuscleSet
+from agentface.head.muscles import MusclesFile
 from agentface.resources import DEFAULT_FACE, face_names
 
 _read = cache(load_model)

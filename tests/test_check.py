@@ -7,9 +7,9 @@ from itertools import pairwise
 import pytest
 from click.testing import CliRunner
 
-from agentface.anatomy.model import load_model
 from agentface.cli import cli
 from agentface.errors import DataError
+from agentface.head.model import load_model
 from agentface.resources import face_folder
 
 SAME_END = ("wrinkles.yaml", r"offset: \[0.0, 0.91, 0.0\]", "offset: [0.0, 0.2, 0.0]")

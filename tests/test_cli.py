@@ -178,7 +178,7 @@ def test_check_names_files_that_it_does_not_know(tmp_path):
 
 
 def test_bench_prints_what_the_benchmarks_say(monkeypatch):
-    from agentface import bench
+    from agentface.studies import bench
 
     monkeypatch.setattr(bench, "run", lambda name, face: {"name": name, "inner": {"time_us": 1.23456}})
     assert json.loads(call("bench", "deform", "--json", "-").stdout) == {
@@ -190,7 +190,7 @@ def test_bench_prints_what_the_benchmarks_say(monkeypatch):
 
 
 def test_all_benchmarks_but_the_one_that_draws_run_without_opengl(monkeypatch):
-    from agentface import bench
+    from agentface.studies import bench
 
     def run(name, face):
         if name == "render":

@@ -16,14 +16,15 @@ PACKAGE = Path(agentface.__file__).parent
 LAYERS = (
     ("errors",),
     ("conventions", "resources", "config"),
-    ("smoothstep",),
-    ("parameters",),
-    ("anatomy",),
+    ("parameters", "clock"),
+    ("mesh",),
+    ("head",),
     ("emotion", "motion", "deform", "tissue", "mpeg4"),
-    ("calibration",),
     ("face",),
+    ("live",),
     ("io", "view"),
-    ("figures", "bench"),
+    ("window",),
+    ("studies",),
     ("commands",),
     ("cli",),
     ("__main__",),
@@ -37,14 +38,14 @@ EXCEPTIONS = {
 
 # Libraries that touch the world outside, and the only parts that may know each
 OWNERS = {
-    "moderngl": {"view"},
-    "glfw": {"view"},
-    "imgui_bundle": {"view"},
+    "moderngl": {"view", "window"},
+    "glfw": {"window"},
+    "imgui_bundle": {"window"},
     "socket": {"io"},
     "pythonosc": {"io"},
     "av": {"io"},
     "defusedxml": {"io"},
-    "PIL": {"io", "view", "figures"},
+    "PIL": {"head", "io", "view", "studies"},
 }
 
 

@@ -19,10 +19,10 @@ def bench(*, name: str | None, json_file: str | None, face: str, deformer: str) 
 
     Of all of them, those that draw are left out, and said to be, on a machine without OpenGL.
     """
-    from agentface.bench import BENCHES
     from agentface.errors import UnknownNameError
     from agentface.face import check_deformer
     from agentface.resources import face_folder
+    from agentface.studies.bench import BENCHES
 
     check_deformer(deformer)
     if name is not None and name not in BENCHES:
@@ -37,7 +37,7 @@ def bench(*, name: str | None, json_file: str | None, face: str, deformer: str) 
 
 
 def _measured(name: str, face: str) -> dict[str, Any]:
-    from agentface.bench import BENCHES, run
+    from agentface.studies.bench import BENCHES, run
 
     click.echo(f"measuring {BENCHES[name]} …", err=True)
     return run(name, face)

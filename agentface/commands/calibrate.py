@@ -14,8 +14,8 @@ from agentface.commands.options import json_option, write_json
 from agentface.errors import OutputError
 
 if TYPE_CHECKING:
-    from agentface.calibration.agreement import Agreement
-    from agentface.calibration.fit import Progress
+    from agentface.studies.calibration.agreement import Agreement
+    from agentface.studies.calibration.fit import Progress
 
     Rows = dict[int, Agreement]
 
@@ -65,11 +65,11 @@ def calibrate(
 
 
 def _measure(faces: Sequence[str] | None, output: str | None, json_file: str | None) -> None:
-    from agentface.anatomy.model import load_model
-    from agentface.calibration.action_units import load_action_units
-    from agentface.calibration.agreement import measure
-    from agentface.calibration.calibrate import table
+    from agentface.head.model import load_model
     from agentface.resources import face_names
+    from agentface.studies.calibration.action_units import load_action_units
+    from agentface.studies.calibration.agreement import measure
+    from agentface.studies.calibration.calibrate import table
 
     models = [load_model(face, asymmetry=0.0) for face in faces or face_names()]
     if json_file is not None:
@@ -82,8 +82,8 @@ def _measure(faces: Sequence[str] | None, output: str | None, json_file: str | N
 
 
 def _renew(path: Path, table: str) -> None:
-    from agentface.calibration.limits import with_table
     from agentface.io.files import write_file
+    from agentface.studies.calibration.limits import with_table
 
     try:
         text = with_table(path.read_text(encoding="utf-8"), table)
@@ -96,14 +96,14 @@ def _renew(path: Path, table: str) -> None:
 
 
 def _fit(face: str, starts: int, seed: int, dry_run: bool, json_file: str | None) -> None:
-    from agentface.anatomy.model import load_model
-    from agentface.anatomy.muscles import read_muscles
-    from agentface.calibration import calibrate as fitting
-    from agentface.calibration.action_units import load_action_units
-    from agentface.calibration.agreement import measure
-    from agentface.calibration.limits import missed
+    from agentface.head.model import load_model
+    from agentface.head.muscles import read_muscles
     from agentface.io.files import check_writable, write_file
     from agentface.resources import face_folder
+    from agentface.studies.calibration import calibrate as fitting
+    from agentface.studies.calibration.action_units import load_action_units
+    from agentface.studies.calibration.agreement import measure
+    from agentface.studies.calibration.limits import missed
 
     path = face_folder(face) / "muscles.yaml"
     units = load_action_units()
@@ -132,8 +132,8 @@ def _progress(starts: int) -> Iterator[Progress]:
     from rich.progress import BarColumn, TextColumn, TimeElapsedColumn, TimeRemainingColumn
     from rich.progress import Progress as Bar
 
-    from agentface.calibration.action_units import load_action_units
-    from agentface.calibration.fit import groups
+    from agentface.studies.calibration.action_units import load_action_units
+    from agentface.studies.calibration.fit import groups
 
     # A search's time grows with its parameters, and with the muscles and action units of each evaluation.
     work = [len(g.muscles) ** 2 * len(g.units) for g in groups(list(load_action_units().values()))]
@@ -149,7 +149,7 @@ def _print(names: dict[int, str], before: Rows, after: Rows) -> None:
     from rich.console import Console
     from rich.table import Table
 
-    from agentface.calibration.calibrate import mean_cosine
+    from agentface.studies.calibration.calibrate import mean_cosine
 
     table = Table("AU", "name", "mean cosine", "peak ratio", "region")
     for number, name in names.items():
@@ -164,8 +164,8 @@ def _print(names: dict[int, str], before: Rows, after: Rows) -> None:
 
 
 def _figures(rows: Rows) -> dict[str, Any]:
-    from agentface.calibration.calibrate import mean_cosine
-    from agentface.calibration.limits import missed
+    from agentface.studies.calibration.calibrate import mean_cosine
+    from agentface.studies.calibration.limits import missed
 
     units = {str(number): asdict(row) for number, row in rows.items()}
     return {

@@ -11,7 +11,7 @@ import click
 from agentface.errors import DataError, Fault, InvalidValueError
 
 if TYPE_CHECKING:
-    from agentface.anatomy.glb import MeshArrays
+    from agentface.mesh.glb import MeshArrays
 
 _Reader = Callable[[Path], object]
 
@@ -84,23 +84,23 @@ def _faults_of(read: Callable[[], object]) -> list[Fault]:
 
 
 def _rule_readers() -> dict[str, _Reader]:
-    from agentface.calibration.action_units import load_action_units
     from agentface.emotion.tables import load_blends, load_emotions
+    from agentface.studies.calibration.action_units import load_action_units
 
     return {"emotions.yaml": load_emotions, "blends.yaml": load_blends, "action_units.yaml": load_action_units}
 
 
 def _face_readers() -> dict[str, _Reader]:
-    from agentface.anatomy.asymmetry import read_asymmetry
-    from agentface.anatomy.glb import read_glb
-    from agentface.anatomy.model import EyesFile, JawFile
-    from agentface.anatomy.muscles import read_muscles
-    from agentface.anatomy.regions import load_regions
-    from agentface.anatomy.rings import EyelidsFile, LipsFile, load_rings
-    from agentface.anatomy.volumes import read_volumes
-    from agentface.anatomy.wrinkles import read_wrinkles
     from agentface.config import load
-    from agentface.view.look import read_look
+    from agentface.head.asymmetry import read_asymmetry
+    from agentface.head.look import read_look
+    from agentface.head.model import EyesFile, JawFile
+    from agentface.head.muscles import read_muscles
+    from agentface.head.regions import load_regions
+    from agentface.head.rings import EyelidsFile, LipsFile, load_rings
+    from agentface.head.volumes import read_volumes
+    from agentface.head.wrinkles import read_wrinkles
+    from agentface.mesh.glb import read_glb
 
     return {
         "head.glb": read_glb,
@@ -121,8 +121,8 @@ def _face_readers() -> dict[str, _Reader]:
 def _read_landmarks(path: Path) -> object:
     import numpy as np
 
-    from agentface.anatomy.landmarks import load_landmarks
     from agentface.conventions import SIDES
+    from agentface.head.landmarks import load_landmarks
 
     vertices = np.zeros((_vertex_count(path), 3), np.float32)
     return load_landmarks(path, vertices, {f"pupil_{side}": np.zeros(3, np.float32) for side in SIDES})
@@ -133,7 +133,7 @@ def _vertex_count(beside: Path) -> int:
 
 
 def _skin_beside(beside: Path) -> MeshArrays:
-    from agentface.anatomy.glb import read_glb
+    from agentface.mesh.glb import read_glb
 
     path = beside.parent / "head.glb"
     meshes = read_glb(path)
@@ -144,8 +144,8 @@ def _skin_beside(beside: Path) -> MeshArrays:
 
 def _whole_face(folder: Path) -> None:
     """What only the files together show: whether muscles, wrinkles, lips, lids and the rest can be made of them."""
-    from agentface.anatomy.model import load_model
-    from agentface.deform import frame
+    from agentface.deform import tables as frame
+    from agentface.head.model import load_model
 
     model = load_model(folder)
     found: list[Fault] = []

@@ -25,8 +25,8 @@ def figures(*, names: tuple[str, ...], output: Path, face: str, deformer: str) -
     """Draw the figures of the papers with this face, and the other pictures of the documents: all, or some by NAME."""
     from agentface.errors import UnknownNameError
     from agentface.face import check_deformer
-    from agentface.figures import FIGURES, draw
     from agentface.io.files import check_writable, write_file
+    from agentface.studies.figures import FIGURES, draw
 
     check_deformer(deformer)
     for name in names:

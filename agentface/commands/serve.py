@@ -91,8 +91,8 @@ def serve(
             _filming(shown, film, duration, every_frame) as on_frame,
             _until_told() as stop,
         ):
-            from agentface.io.live import run_live
-            from agentface.motion.clock import SystemClock
+            from agentface.clock import SystemClock
+            from agentface.live.loop import run_live
 
             _announce(shown, place)
             run_live(shown, SystemClock(), stop, fps=rate, duration=duration or math.inf, on_frame=on_frame)

@@ -80,10 +80,10 @@ def sheet(
     from rich.console import Console
     from rich.progress import track
 
-    from agentface.figures.sheet import check_sheet_size
-    from agentface.figures.sheet import sheet as contact_sheet
     from agentface.io.files import check_writable
     from agentface.io.picture import check_picture_name, write_picture
+    from agentface.view.contact_sheet import check_sheet_size
+    from agentface.view.contact_sheet import sheet as contact_sheet
 
     check_picture_name(output)
     check_writable(output)

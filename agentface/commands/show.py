@@ -11,7 +11,7 @@ from agentface.commands.options import face_options, live_quality_option, look_o
 
 if TYPE_CHECKING:
     from agentface.face import Face
-    from agentface.view.window import Window
+    from agentface.window.window import Window
 
 
 @click.command()
@@ -29,11 +29,11 @@ def make_window(
     face: Face, say: Callable[[str], object] = click.echo, look: str | None = None, quality: str | None = None
 ) -> Window:
     """A window that writes pictures and films into the current folder; ``quality``: what suits the driver if None."""
+    from agentface.head.look import load_look
     from agentface.io.picture import write_picture
     from agentface.io.video import VideoWriter
-    from agentface.view.capture import Capture
-    from agentface.view.look import load_look
-    from agentface.view.window import Window
+    from agentface.window.capture import Capture
+    from agentface.window.window import Window
 
     capture, worn = Capture(write_picture, VideoWriter, say), load_look(face.model, look)
     return Window(face, capture=capture, look=worn, say=say, quality=quality)

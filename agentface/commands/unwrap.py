@@ -22,12 +22,12 @@ def unwrap(*, look: str | None, size: int, lines: bool, output: Path, face: str,
 
     Paint it, and name it in a look's file for every other command to wear it: skin: {..., texture: FILE.png}
     """
-    from agentface.anatomy.model import load_model
     from agentface.face import check_deformer
+    from agentface.head.look import load_look
+    from agentface.head.model import load_model
     from agentface.io.files import check_writable
     from agentface.io.picture import check_picture_name, write_picture
-    from agentface.view.look import load_look
-    from agentface.view.skin_template import skin_template
+    from agentface.view.skin.template import skin_template
 
     check_deformer(deformer)
     check_picture_name(output, alpha=True)
@@ -35,7 +35,7 @@ def unwrap(*, look: str | None, size: int, lines: bool, output: Path, face: str,
     model = load_model(face)
     picture = skin_template(model, load_look(model, look), size)
     if lines:
-        from agentface.figures.template import with_guides
+        from agentface.view.skin.guides import with_guides
 
         picture = with_guides(picture, model)
     write_picture(output, picture)

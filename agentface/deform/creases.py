@@ -1,21 +1,23 @@
 """No skin turns over where the lids or the lips press it against what the vector muscles brought there.
 
-What :mod:`agentface.deform.squash` does after the vector muscles, done once more when lids, lips and jaw have moved: a
-lid that opens wide lifts skin into the lowered brow, lips that press draw skin under the corner of a smiling mouth.
-Lids and the red of the lips fold by design and do not give way.
+What :mod:`agentface.deform.muscles.squash` does after the vector muscles, done once more when lids, lips and jaw
+have moved: a lid that opens wide lifts skin into the lowered brow, lips that press draw skin under the corner of a
+smiling mouth. Lids and the red of the lips fold by design and do not give way.
 """
 
 from __future__ import annotations
 
 import numpy as np
 
-from agentface.anatomy.model import HeadModel
 from agentface.conventions import Doubles
-from agentface.deform import eyelids, lips, squash
-from agentface.deform.eyelids import HOLD, EyelidsTables
-from agentface.deform.lips import LipTables
-from agentface.deform.squash import SquashTables
-from agentface.deform.vector_muscle import pull
+from agentface.deform.eyes import eyelids
+from agentface.deform.eyes.eyelids import HOLD, EyelidsTables
+from agentface.deform.mouth import lips
+from agentface.deform.mouth.lips import LipTables
+from agentface.deform.muscles import squash
+from agentface.deform.muscles.squash import SquashTables
+from agentface.deform.muscles.vector_muscle import pull
+from agentface.head.model import HeadModel
 from agentface.parameters import FacePose
 
 _TOUCHED = 1e-4  # m, the way from which on lids or lips move a vertex

@@ -11,13 +11,13 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from agentface.anatomy.model import HeadModel
 from agentface.conventions import Floats
-from agentface.deform import frame
-from agentface.deform.combine import STEP
+from agentface.deform import tables as frame
 from agentface.deform.geometry import FaceGeometry
+from agentface.deform.muscles.combine import STEP
 from agentface.deform.ranges import check_poses
 from agentface.errors import InvalidValueError
+from agentface.head.model import HeadModel
 from agentface.parameters import COUNT, VECTOR_MUSCLES, FacePose
 
 _EXPECTED = f"an array of numbers of shape (B, {COUNT}) or a sequence of poses"
@@ -76,8 +76,8 @@ class Crowd:
     """
 
     def __init__(self, model: HeadModel, threads: int = 1) -> None:
-        from agentface.deform.blocks import pack
-        from agentface.deform.compiled import frame as kernels
+        from agentface.deform import crowd_compiled as kernels
+        from agentface.deform.muscles.blocks import pack
 
         if isinstance(threads, bool) or not isinstance(threads, int) or threads < 1:
             raise InvalidValueError("threads", "a number from 1 on", threads)

@@ -7,29 +7,29 @@ from functools import partial
 from importlib import import_module
 from typing import Any, Protocol
 
-from agentface.anatomy.model import HeadModel
 from agentface.conventions import Floats
-from agentface.deform import frame
-from agentface.deform.combine import Combiner, Method
+from agentface.deform import tables as frame
 from agentface.deform.geometry import FaceGeometry
-from agentface.deform.normals import NormalField
+from agentface.deform.muscles.combine import Combiner, Method
 from agentface.deform.ranges import check_pose
+from agentface.head.model import HeadModel
+from agentface.mesh.normal_field import NormalField
 from agentface.parameters import VECTOR_MUSCLES, FacePose, indices_of
 
-_PARTS = (
-    "limits",
-    "lips",
-    "eyelids",
-    "volumes",
-    "jaw",
-    "contact",
-    "squash",
-    "between",
-    "wrinkles",
-    "shading",
-    "eyes",
-    "head",
-)
+_PARTS = {
+    "limits": "muscles.limits",
+    "lips": "mouth.lips",
+    "eyelids": "eyes.eyelids",
+    "volumes": "muscles.volumes",
+    "jaw": "mouth.jaw",
+    "contact": "mouth.contact",
+    "squash": "muscles.squash",
+    "between": "midpoints",
+    "wrinkles": "finish.wrinkles",
+    "shading": "finish.wrinkle_normals",
+    "eyes": "eyes.eyeballs",
+    "head": "finish.head_turn",
+}
 
 
 class Deformer(Protocol):
@@ -58,7 +58,7 @@ class GeometricDeformer:
         self._normals = NormalField(model.triangles, count, compiled=compiled)
         first = indices_of(VECTOR_MUSCLES[0])[0]
         self._muscles = slice(first, first + len(VECTOR_MUSCLES))
-        self._stages = self._in_order(tables, "agentface.deform.compiled" if compiled else "agentface.deform")
+        self._stages = self._in_order(tables, "_compiled" if compiled else "")
 
     def deform(self, pose: FacePose) -> FaceGeometry:
         """The face in ``pose``; the result's arrays are overwritten by the next call.
@@ -75,8 +75,10 @@ class GeometricDeformer:
         """What a frame consists of, in its order, by name: each goes on from what the ones before it left."""
         return {name: partial(_act, stage) for name, stage in self._stages.items()}
 
-    def _in_order(self, tables: frame.PartTables, package: str) -> dict[str, Callable[[Floats], None]]:
-        part: dict[str, Any] = {name: import_module(f"{package}.{name}") for name in _PARTS}
+    def _in_order(self, tables: frame.PartTables, ending: str) -> dict[str, Callable[[Floats], None]]:
+        part: dict[str, Any] = {
+            name: import_module(f"agentface.deform.{module}{ending}") for name, module in _PARTS.items()
+        }
         shown, points = self.geometry, self._points
         raised = part["wrinkles"]
 

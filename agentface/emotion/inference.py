@@ -31,7 +31,7 @@ class Inference:
         self._infer: Callable[..., None] | None = None
         if not compiled:
             return
-        from agentface.emotion.kernels import infer
+        from agentface.emotion.inference_compiled import infer
 
         self._infer = infer
         modes = rulebase.modes

@@ -1,1 +1,1 @@
-"""Pictures and the live window: OpenGL through moderngl."""
+"""Pictures: OpenGL through moderngl."""

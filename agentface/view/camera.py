@@ -6,9 +6,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from agentface.anatomy.model import HeadModel
 from agentface.conventions import Doubles, check_finite, check_range
 from agentface.errors import InvalidValueError, UnknownNameError
+from agentface.head.model import HeadModel
 
 VIEWS: dict[str, tuple[float, float]] = {"front": (0.0, 2.0), "three-quarter": (35.0, 3.0), "profile": (88.0, 2.0)}
 """Name of a view: yaw towards the person's left and pitch upwards, in degrees."""

@@ -7,32 +7,32 @@ from typing import Any
 
 import numpy as np
 
-from agentface.anatomy.model import HeadModel
 from agentface.conventions import SIDES, Bytes, Floats
 from agentface.deform.geometry import FaceGeometry
-from agentface.view import pores
-from agentface.view.anchored import AnchoredArray, eye_linings
-from agentface.view.brows import BrowLine, brow_hairs, lash_hairs
+from agentface.head.look import Look, load_look
+from agentface.head.model import HeadModel
+from agentface.head.skin_image import skin_texture
 from agentface.view.camera import Camera, named_view
-from agentface.view.complexion import complexion, folds
-from agentface.view.context import Witness, make_current, open_context, shader_names
-from agentface.view.frame import pack_frame, pixels_a_metre, shadow_projection, unit
-from agentface.view.hair import Hairline, hair_shade, hidden
-from agentface.view.head_hair import HeadHair
-from agentface.view.lips import FineLips
-from agentface.view.look import Look, load_look
-from agentface.view.mouth import Mouth
-from agentface.view.noise import SIDE, noise_volume
-from agentface.view.parts import Eyeball, RigidPart
-from agentface.view.programs import FRAME_BINDING, Programs
-from agentface.view.ribbons import HairArray
-from agentface.view.shadow import KeyShadow
-from agentface.view.shirt import shirt
-from agentface.view.skin import Skin, SkinFields, SkinMeshes
-from agentface.view.skin_image import skin_texture
-from agentface.view.targets import Targets, checked_size
-from agentface.view.tiers import tier_named
-from agentface.view.wrinkles import WrinkleAtlas
+from agentface.view.gl.context import Witness, make_current, open_context, shader_names
+from agentface.view.gl.noise import SIDE, noise_volume
+from agentface.view.gl.programs import FRAME_BINDING, Programs
+from agentface.view.gl.quality import tier_named
+from agentface.view.gl.shadow import KeyShadow
+from agentface.view.gl.targets import Targets, checked_size
+from agentface.view.gl.uniforms import pack_frame, pixels_a_metre, shadow_projection, unit
+from agentface.view.hair.brows import BrowLine, brow_hairs, lash_hairs
+from agentface.view.hair.hairline import Hairline, hair_shade, hidden
+from agentface.view.hair.head_hair import HeadHair
+from agentface.view.hair.ribbons import HairArray
+from agentface.view.parts.anchored import AnchoredArray, eye_linings
+from agentface.view.parts.mouth import Mouth
+from agentface.view.parts.rigid import Eyeball, RigidPart
+from agentface.view.skin import pores
+from agentface.view.skin.complexion import complexion, folds
+from agentface.view.skin.fine_lips import FineLips
+from agentface.view.skin.meshes import Skin, SkinFields, SkinMeshes
+from agentface.view.skin.shirt import shirt
+from agentface.view.skin.wrinkle_atlas import WrinkleAtlas
 
 _SEED = 20
 _LIP_CUTS = 2

@@ -9,10 +9,10 @@ from dataclasses import dataclass
 import numpy as np
 from numba import njit
 
-from agentface.anatomy.model import HeadModel
-from agentface.anatomy.ring_names import LidRing
 from agentface.conventions import SIDES
 from agentface.deform.geometry import FaceGeometry
+from agentface.head.model import HeadModel
+from agentface.head.ring_names import LidRing
 from agentface.parameters import PARAMETERS, FacePose
 
 UPPER_LID_RINGS, LOWER_LID_RINGS = LidRing.FOLD + 1, LidRing.PLATE + 2

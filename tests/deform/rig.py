@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from agentface.anatomy.muscle_set import Falloff, MuscleSet
 from agentface.conventions import Bytes, Floats, Indices
+from agentface.head.muscle_set import Falloff, MuscleSet
 
 # left half, centimetres: name, origin x y, insertion x y, Rs, Rf, half angle in degrees, regions of one side
 _HALF = [

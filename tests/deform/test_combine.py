@@ -7,12 +7,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from agentface.anatomy.muscle_set import FALLOFFS, MuscleSet
-from agentface.deform.blocks import pack, slacks
-from agentface.deform.combine import METHODS, REFERENCE, STEP, Combiner
-from agentface.deform.compiled.contraction import LANES
-from agentface.deform.vector_muscle import pull
+from agentface.deform.muscles.blocks import pack, slacks
+from agentface.deform.muscles.combine import METHODS, REFERENCE, STEP, Combiner
+from agentface.deform.muscles.combine_compiled import LANES
+from agentface.deform.muscles.vector_muscle import pull
 from agentface.errors import InvalidValueError, UnknownNameError
+from agentface.head.muscle_set import FALLOFFS, MuscleSet
 from tests.deform.rig import make_rig
 
 COUNT = 38

@@ -5,10 +5,10 @@ from itertools import combinations
 import numpy as np
 import pytest
 
-from agentface.anatomy.ring_names import LidRing
 from agentface.deform.pipeline import GeometricDeformer
 from agentface.emotion.inference import default_inference
 from agentface.emotion.state import EMOTIONS, EmotionState
+from agentface.head.ring_names import LidRing
 from agentface.parameters import PARAMETERS, FacePose
 from tests.deform.conflicts import Edges, Poking, fold_vertices, random_poses
 from tests.heads import deformer_of, head_model

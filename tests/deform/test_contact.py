@@ -5,10 +5,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from agentface.deform import contact
-from agentface.deform.compiled import contact as compiled
-from agentface.deform.dental_arch import fit_arch
-from agentface.deform.lip_grid import column_places, lip_grid
+from agentface.deform.mouth import contact
+from agentface.deform.mouth import contact_compiled as compiled
+from agentface.deform.mouth.dental_arch import fit_arch
+from agentface.deform.mouth.lip_grid import column_places, lip_grid
 from agentface.parameters import COUNT, PARAMETERS, FacePose, indices_of
 from tests.deform.crossings import crossings, edges_of
 from tests.heads import deformer_of, head_model

@@ -9,13 +9,13 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from agentface.anatomy.resample import thinned
-from agentface.bench.crowd import random_poses
 from agentface.deform.crowd import Crowd
 from agentface.deform.pipeline import GeometricDeformer
 from agentface.deform.ranges import check_pose, check_poses
 from agentface.errors import InvalidValueError
+from agentface.head.resample import thinned
 from agentface.parameters import COUNT, NAMES, PARAMETERS, FacePose
+from agentface.studies.bench.crowd import random_poses
 from tests.heads import deformer_of, head_model
 
 MODELS = {face: head_model(face) for face in ("amber", "onyx")}

@@ -5,11 +5,12 @@ import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
-from agentface.calibration.agreement import agreement
-from agentface.deform import eyelids, eyes
-from agentface.deform.compiled import eyelids as compiled
-from agentface.deform.compiled import simd
+from agentface.deform import simd
+from agentface.deform.eyes import eyeballs as eyes
+from agentface.deform.eyes import eyelids
+from agentface.deform.eyes import eyelids_compiled as compiled
 from agentface.parameters import COUNT, NAMES, PARAMETERS, FacePose
+from agentface.studies.calibration.agreement import agreement
 from tests.heads import head_model
 
 FACES = {face: head_model(face) for face in ("amber", "onyx")}

@@ -9,11 +9,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.spatial import ConvexHull
 
-from agentface.calibration.agreement import agreement
-from agentface.deform import jaw
-from agentface.deform.compiled import jaw as compiled
+from agentface.deform.mouth import jaw
+from agentface.deform.mouth import jaw_compiled as compiled
 from agentface.deform.pipeline import GeometricDeformer
 from agentface.parameters import FacePose
+from agentface.studies.calibration.agreement import agreement
 from tests.heads import deformer_of, head_model
 
 FACES = {face: head_model(face) for face in ("amber", "onyx")}

@@ -8,17 +8,20 @@ import yaml
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from agentface.anatomy.model import load_model
-from agentface.anatomy.regions import with_sides
-from agentface.calibration.action_units import load_action_units
-from agentface.deform import creases, eyelids, limits, lips, squash
-from agentface.deform.combine import Combiner
-from agentface.deform.compiled import limits as compiled
-from agentface.deform.compiled import squash as compiled_squash
+from agentface.deform import creases
+from agentface.deform.eyes import eyelids
+from agentface.deform.mouth import lips
+from agentface.deform.muscles import limits, squash
+from agentface.deform.muscles import limits_compiled as compiled
+from agentface.deform.muscles import squash_compiled as compiled_squash
+from agentface.deform.muscles.combine import Combiner
 from agentface.emotion.inference import default_inference
 from agentface.emotion.state import EMOTIONS, EmotionState
 from agentface.errors import DataError
+from agentface.head.model import load_model
+from agentface.head.regions import with_sides
 from agentface.parameters import VECTOR_MUSCLES, FacePose, indices_of
+from agentface.studies.calibration.action_units import load_action_units
 from tests.deform.conflicts import Edges
 from tests.heads import head_model
 

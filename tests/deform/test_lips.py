@@ -6,12 +6,13 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
 
-from agentface.deform import bspline, lips
-from agentface.deform.compiled import lips as compiled
-from agentface.deform.lip_grid import VERMILION_RING, lip_grid
-from agentface.deform.lip_mesh import evaluate, patch_mesh
-from agentface.deform.lip_surface import COLUMNS, ROWS, grid_places, mirrored_controls, weights
+from agentface.deform.mouth import lips
+from agentface.deform.mouth import lips_compiled as compiled
+from agentface.deform.mouth.lip_grid import VERMILION_RING, lip_grid
+from agentface.deform.mouth.lip_mesh import evaluate, patch_mesh
+from agentface.deform.mouth.lip_surface import COLUMNS, ROWS, grid_places, mirrored_controls, weights
 from agentface.errors import InvalidValueError
+from agentface.mesh import bspline
 from agentface.parameters import FacePose
 from tests.heads import head_model
 
@@ -194,7 +195,7 @@ def test_the_press_rolls_the_lips_in_only_when_strong(face):
     ],
 )
 def test_the_muscle_agrees_with_the_artists(face, muscle, shapes, least):
-    from agentface.calibration.agreement import agreement
+    from agentface.studies.calibration.agreement import agreement
 
     model = FACES[face]
     artists = sum((model.shapes[name].dense(len(model.vertices)) for name in shapes), 0 * model.vertices)

@@ -7,9 +7,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from agentface.anatomy.muscle_set import FALLOFFS, MuscleSet
-from agentface.deform.vector_muscle import angular, displacement, pull, radial
+from agentface.deform.muscles.vector_muscle import angular, displacement, pull, radial
 from agentface.errors import InvalidValueError, UnknownNameError
+from agentface.head.muscle_set import FALLOFFS, MuscleSet
 
 ORIGIN, INSERTION = np.array([0.0, 0.05, 0.0]), np.array([0.0, 0.0, 0.01])
 SHAPE = {"zone": 0.7, "fall_start": 0.03, "fall_finish": 0.06, "elasticity": 0.012}

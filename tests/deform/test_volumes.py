@@ -8,9 +8,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
 
-from agentface.anatomy.volumes import VolumesFile
-from agentface.deform import volumes
-from agentface.deform.compiled import volumes as compiled
+from agentface.deform.muscles import volumes
+from agentface.deform.muscles import volumes_compiled as compiled
+from agentface.head.volumes import VolumesFile
 from agentface.parameters import COUNT, FacePose, indices_of
 from tests.heads import head_model
 

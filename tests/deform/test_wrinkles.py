@@ -7,12 +7,12 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from agentface.anatomy.trains import DrawnTrain, ZoneTrain, heights, inner_feet, parabolas, relief
-from agentface.anatomy.wrinkles import read_wrinkles
-from agentface.deform import wrinkles
-from agentface.deform.compiled import wrinkles as compiled
-from agentface.deform.normals import corner_normals, vertex_normals
+from agentface.deform.finish import wrinkles
+from agentface.deform.finish import wrinkles_compiled as compiled
 from agentface.errors import DataError
+from agentface.head.trains import DrawnTrain, ZoneTrain, heights, inner_feet, parabolas, relief
+from agentface.head.wrinkles import read_wrinkles
+from agentface.mesh.normal_field import corner_normals, vertex_normals
 from agentface.parameters import COUNT, MUSCLES, NAMES, PARAMETERS, indices_of
 from tests.heads import head_model
 

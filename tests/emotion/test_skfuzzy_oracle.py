@@ -8,13 +8,13 @@ import numpy as np
 import pytest
 from skfuzzy.control import ControlSystem
 
-from agentface.bench.fuzzy import control_centroids, control_simulation
 from agentface.emotion.inference import Inference
 from agentface.emotion.rules import Mode, RuleBase
 from agentface.emotion.selector import MODES, mode_weights
 from agentface.emotion.sets import rescale
 from agentface.emotion.state import EMOTIONS, EmotionState
 from agentface.parameters import MUSCLES
+from agentface.studies.bench.fuzzy import control_centroids, control_simulation
 
 TOLERANCE = 1e-9
 SINGLE_STATES, BLEND_STATES = 130, 15

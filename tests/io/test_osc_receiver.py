@@ -8,10 +8,10 @@ import pytest
 from osc_bytes import bundle, message
 
 from agentface import EmotionState, Face
-from agentface.io.osc.agenda import FURTHEST_S, MOST
+from agentface.clock import ManualClock
 from agentface.io.osc.codec import decode
 from agentface.io.osc.receiver import ANSWERS_A_SECOND, ANSWERS_AT_ONCE, Receiver
-from agentface.motion.clock import ManualClock
+from agentface.io.osc.schedule import FURTHEST_S, MOST
 from tests.heads import head_model
 
 ME = ("127.0.0.1", 1)

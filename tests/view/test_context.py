@@ -4,7 +4,7 @@ import pytest
 from agentface import Face
 from agentface.errors import GraphicsError
 from agentface.resources import data_folder
-from agentface.view.context import compile_program, open_context, read_source
+from agentface.view.gl.context import compile_program, open_context, read_source
 
 NOTHING = "#version 330 core\nvoid main() { gl_Position = vec4(0.0); }\n"
 

@@ -12,8 +12,8 @@ from PIL import Image
 
 from agentface import EMOTIONS, Face
 from agentface.resources import face_names
-from agentface.view.context import open_context
-from agentface.view.tiers import QUALITIES
+from agentface.view.gl.context import open_context
+from agentface.view.gl.quality import QUALITIES
 from tests.view.compare import FOLDER, Goldens, difference, reduced
 
 EXAMPLES = Path(__file__).parents[2] / "examples"

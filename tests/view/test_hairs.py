@@ -3,21 +3,21 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from agentface.anatomy.model import load_model
-from agentface.anatomy.normals import vertex_normals
 from agentface.deform.pipeline import GeometricDeformer
+from agentface.head.look import load_look
+from agentface.head.model import load_model
+from agentface.mesh.normals import vertex_normals
 from agentface.parameters import FacePose
-from agentface.view import strands as strands_module
-from agentface.view.brows import BrowLine, brow_hairs, lash_hairs
 from agentface.view.camera import named_view
-from agentface.view.cap import scalp_cap
-from agentface.view.grow import grow
-from agentface.view.hair import Hairline, hair_shade
-from agentface.view.hull import Hull
-from agentface.view.look import load_look
+from agentface.view.hair import strands as strands_module
+from agentface.view.hair.brows import BrowLine, brow_hairs, lash_hairs
+from agentface.view.hair.cap import scalp_cap
+from agentface.view.hair.groom import grow
+from agentface.view.hair.hairline import Hairline, hair_shade
+from agentface.view.hair.hull import Hull
+from agentface.view.hair.ribbons import roots_along, roots_in_front
+from agentface.view.hair.visible import unhidden
 from agentface.view.renderer import Renderer
-from agentface.view.ribbons import roots_along, roots_in_front
-from agentface.view.visible import unhidden
 
 
 @pytest.fixture(scope="module", params=["amber", "onyx"])

@@ -5,11 +5,11 @@ from collections import Counter
 import numpy as np
 import pytest
 
-from agentface.anatomy.normals import vertex_normals
-from agentface.deform import lips as deformer
+from agentface.deform.mouth import lips as deformer
+from agentface.mesh.normals import vertex_normals
+from agentface.mesh.refine import refine
 from agentface.parameters import FacePose
-from agentface.view.lips import FineLips
-from agentface.view.refine import refine
+from agentface.view.skin.fine_lips import FineLips
 from tests.heads import head_model
 
 FACES = {face: head_model(face) for face in ("amber", "onyx")}

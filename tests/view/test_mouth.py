@@ -6,9 +6,9 @@ import pytest
 from agentface.emotion.inference import default_inference
 from agentface.emotion.state import EmotionState
 from agentface.parameters import FacePose
-from agentface.view.context import open_context
-from agentface.view.mouth import Mouth
-from agentface.view.programs import Programs
+from agentface.view.gl.context import open_context
+from agentface.view.gl.programs import Programs
+from agentface.view.parts.mouth import Mouth
 from tests.heads import deformer_of, head_model
 
 pytestmark = pytest.mark.gl

@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from agentface.anatomy.build.occlusion import ambient_light, half_sphere
+from agentface.head.build.occlusion import ambient_light, half_sphere
 from tests.heads import head_model
 
 

@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from agentface.view.pores import SIDE, pore_volume
+from agentface.view.skin.pores import SIDE, pore_volume
 
 
 @pytest.fixture(scope="module")

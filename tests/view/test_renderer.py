@@ -2,11 +2,11 @@ import numpy as np
 import pytest
 from scipy.ndimage import label
 
-from agentface.anatomy.normals import vertex_normals
 from agentface.deform.geometry import FaceGeometry
 from agentface.errors import DataError, InvalidValueError, UnknownNameError
+from agentface.head.look import load_look, read_look
+from agentface.mesh.normals import vertex_normals
 from agentface.view.camera import Camera, named_view
-from agentface.view.look import load_look, read_look
 from agentface.view.renderer import Renderer
 from tests.heads import head_model
 

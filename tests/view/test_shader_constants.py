@@ -9,7 +9,9 @@ import numpy as np
 import pytest
 
 from agentface.resources import data_folder
-from agentface.view import reliefs, shadow, skin
+from agentface.view.gl import shadow
+from agentface.view.skin import meshes as skin
+from agentface.view.skin import wrinkle_patches as reliefs
 
 
 @pytest.mark.parametrize(

@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
-from agentface.view.hair import Hairline
-from agentface.view.hull import Hull
-from agentface.view.look import load_look
-from agentface.view.sheets import edge_shade, flyaways, parting_line, sheets
-from agentface.view.styles import PARTED, Amount
+from agentface.head.look import load_look
+from agentface.view.hair.hairline import Hairline
+from agentface.view.hair.hull import Hull
+from agentface.view.hair.sheets import edge_shade, flyaways, parting_line, sheets
+from agentface.view.hair.styles import PARTED, Amount
 from tests.heads import head_model
 
 

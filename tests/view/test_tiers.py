@@ -2,7 +2,7 @@ from __future__ import annotations
 
 import pytest
 
-from agentface.view.tiers import TIERS, suited_quality
+from agentface.view.gl.quality import TIERS, suited_quality
 
 
 @pytest.mark.parametrize(

@@ -4,12 +4,12 @@ import numpy as np
 import pytest
 from scipy.ndimage import binary_dilation
 
-from agentface.anatomy.normals import vertex_normals
-from agentface.anatomy.trains import heights
 from agentface.deform.geometry import FaceGeometry
+from agentface.head.trains import heights
+from agentface.mesh.normals import vertex_normals
 from agentface.view.camera import named_view
-from agentface.view.reliefs import SIDE, STEEPEST, deep_places, depth_left
 from agentface.view.renderer import Renderer
+from agentface.view.skin.wrinkle_patches import SIDE, STEEPEST, deep_places, depth_left
 from tests.heads import head_model
 
 pytestmark = pytest.mark.gl

@@ -6,10 +6,9 @@ import json
 from collections.abc import Callable, Iterable
 from typing import Any, TypeAlias
 
+from agentface.clock import Clock
 from agentface.errors import AgentFaceError, InvalidValueError
 from agentface.face import Face
-from agentface.io.osc.agenda import FURTHEST_S, MOST, Agenda
-from agentface.io.osc.allowance import Allowance
 from agentface.io.osc.codec import MalformedError, Message, address_of, decode, encode
 from agentface.io.osc.commands import (
     PREFIX,
@@ -20,7 +19,8 @@ from agentface.io.osc.commands import (
     read_command,
     reason_and_hint,
 )
-from agentface.motion.clock import Clock
+from agentface.io.osc.rate_limit import Allowance
+from agentface.io.osc.schedule import FURTHEST_S, MOST, Agenda
 
 Sender: TypeAlias = tuple[Any, ...]
 """The address of a socket."""

@@ -10,11 +10,11 @@ from collections import deque
 from types import TracebackType
 from typing import Self
 
+from agentface.clock import Clock, SystemClock
 from agentface.errors import ServerError
 from agentface.face import Face
 from agentface.io.osc.codec import LARGEST_DATAGRAM
 from agentface.io.osc.receiver import Receiver, Sender
-from agentface.motion.clock import Clock, SystemClock
 
 DEFAULT_HOST, DEFAULT_PORT = "127.0.0.1", 7400
 MOST_WAITING = 1024

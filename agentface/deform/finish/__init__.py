@@ -1,0 +1,1 @@
+"""What the skin of every deformer gets last: wrinkles, normals, neck, the head's turn."""

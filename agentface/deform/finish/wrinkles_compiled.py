@@ -1,0 +1,44 @@
+"""Wrinkle heights, compiled; the numpy twins are in :mod:`agentface.deform.finish.wrinkles`."""
+
+from __future__ import annotations
+
+import numpy as np
+from numba import njit
+
+from agentface.conventions import Floats
+from agentface.deform.finish.wrinkles import WrinkleTables
+
+_ZERO, _ONE = np.float32(0.0), np.float32(1.0)
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def levels(tables: WrinkleTables, values: Floats, out: Floats) -> None:
+    """The trains' contractions ``out (K,)``."""
+    for train in range(tables.parameters.shape[0]):
+        level = _ZERO
+        for muscle in range(tables.parameters.shape[1]):
+            level = max(level, values[tables.parameters[train, muscle]])
+        out[train] = min(level, _ONE)
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def heights(tables: WrinkleTables, values: Floats, out: Floats) -> None:
+    """The highest of the trains at each vertex, ``out (V,)`` m."""
+    out[:] = _ZERO
+    for train in range(tables.parameters.shape[0]):
+        level = _ZERO
+        for muscle in range(tables.parameters.shape[1]):
+            level = max(level, values[tables.parameters[train, muscle]])
+        if level > _ZERO:
+            level = min(level, _ONE)
+            for entry in range(tables.first[train], tables.first[train + 1]):
+                vertex = tables.vertices[entry]
+                out[vertex] = max(out[vertex], level * tables.heights[entry])
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def raise_vertices(tables: WrinkleTables, heights: Floats, normals: Floats, vertices: Floats) -> None:
+    """Moves ``vertices (V, 3)`` along ``normals (V, 3)`` by ``heights (V,)`` m."""
+    for vertex in tables.raised:
+        for axis in range(3):
+            vertices[vertex, axis] += heights[vertex] * normals[vertex, axis]

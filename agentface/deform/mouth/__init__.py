@@ -1,0 +1,1 @@
+"""Lips, jaw, teeth: orbicularis oris, the lips' surface, contact."""

@@ -1,0 +1,170 @@
+"""The loops of contact; their numpy twins are in :mod:`agentface.deform.mouth.contact`."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+from numba import njit
+
+from agentface.conventions import Floats, Indices
+from agentface.deform.mouth.contact import CORNER, FARTHEST, PARTINGS, ROUNDS, SPREAD, STEEP, ContactTables
+
+_ZERO, _QUARTER, _HALF, _ONE = np.float32(0.0), np.float32(0.25), np.float32(0.5), np.float32(1.0)
+_TWO, _THREE, _FOUR, _CLOSEST = np.float32(2.0), np.float32(3.0), np.float32(4.0), np.float32(1e-6)
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def apply(tables: ContactTables, values: Floats, points: Floats) -> None:
+    """Shuts pressed lips, parts lips that overlap, and pushes them out of the teeth; as its twin."""
+    for _ in range(ROUNDS if values[tables.press] > _ZERO else 1):
+        _close_lips(tables, values[tables.press], points)
+        _part_lips(tables, points)
+    angle = np.float32(tables.widest * values[tables.jaw])
+    cosine, sine = np.float32(math.cos(angle)), np.float32(math.sin(angle))
+    hinge_y, hinge_z = tables.hinge[0], tables.hinge[1]
+    for k in range(tables.vertex.shape[0]):
+        vertex = tables.vertex[k]
+        across, ahead = _push(tables, 0, k, points[vertex, 0], points[vertex, 1], points[vertex, 2])
+        points[vertex, 0] += across
+        points[vertex, 2] += ahead
+        up, forward = points[vertex, 1] - hinge_y, points[vertex, 2] - hinge_z
+        y = hinge_y + cosine * up + sine * forward
+        z = hinge_z - sine * up + cosine * forward
+        across, ahead = _push(tables, 1, k, points[vertex, 0], y, z)
+        points[vertex, 0] += across
+        points[vertex, 1] -= sine * ahead
+        points[vertex, 2] += cosine * ahead
+    for _ in range(PARTINGS):
+        if not _part_lips(tables, points):
+            break
+
+
+@njit(cache=True, nogil=True, error_model="numpy", inline="always")
+def _push(tables: ContactTables, arch: int, k: int, x: float, y: float, z: float) -> Any:
+    kept = tables.kept[arch, k]
+    if kept < _ZERO:
+        return _ZERO, _ZERO
+    beyond = (tables.arch[arch, 2] - y) / tables.arch[arch, 3]
+    if beyond >= _ONE:
+        return _ZERO, _ZERO
+    share = min(_ONE, _ONE - beyond)
+    share = share * share * (_THREE - _TWO * share)
+    slope = _TWO * tables.arch[arch, 1] * x
+    steepness = np.float32(math.sqrt(_ONE + slope * slope))
+    distance = (z - tables.arch[arch, 0] + tables.arch[arch, 1] * x * x) / steepness
+    soft = tables.softness[arch, k]
+    over = soft - (distance - kept)
+    if over <= _ZERO:
+        return _ZERO, _ZERO
+    push = share * (over * over / (_FOUR * soft) if over < _TWO * soft else over - soft) / steepness
+    return push * slope, push
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _close_lips(tables: ContactTables, press: np.float32, points: Floats) -> None:
+    share = min(_ONE, press / np.float32(tables.shut_from))
+    if share <= _ZERO:
+        return
+    move = np.zeros(tables.grid.shape[1], np.float32)
+    for lip in range(2):
+        own, other = (tables.upper, tables.lower) if lip == 0 else (tables.lower, tables.upper)
+        sign = _ONE if lip == 0 else -_ONE
+        across, up = _rings(tables, other, points)
+        near = np.zeros(own.shape[0], np.float32)
+        for k in range(2, own.shape[0] - 2):
+            gap = np.float32(np.inf)
+            for ring in range(tables.first, tables.last + 1):
+                vertex = tables.grid[ring, own[k]]
+                for facing in range(across.shape[0]):
+                    overlap = _overlap(across[facing], up[facing], points[vertex], sign)[0]
+                    gap = min(gap, -overlap)
+            gap = max(gap, _ZERO)
+            near[k] = min(_ONE, max(_ZERO, _TWO - gap / FARTHEST)) * gap
+        for k in range(1, own.shape[0] - 1):
+            even = _HALF * near[k] + _QUARTER * (near[k - 1] + near[k + 1])
+            move[own[k]] = -_HALF * sign * share * even
+    _move(tables, move, points)
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _part_lips(tables: ContactTables, points: Floats) -> bool:
+    """Whether any lip had to give way: where none had, another round would find none."""
+    columns = tables.grid.shape[1]
+    up, down = np.zeros(columns, np.float32), np.zeros(columns, np.float32)
+    any_up = _push_apart(tables, tables.upper, tables.lower, tables.overlap_upper, _ONE, points, up, down)
+    any_down = _push_apart(tables, tables.lower, tables.upper, tables.overlap_lower, -_ONE, points, down, up)
+    if not (any_up or any_down):
+        return False
+    move = up - down
+    for end in (0, -1):
+        a, b = tables.upper[end], tables.lower[end]
+        move[a] = _HALF * (move[a] + move[b])
+        move[b] = move[a]
+    _move(tables, move, points)
+    return True
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _move(tables: ContactTables, move: Floats, points: Floats) -> None:
+    for ring in range(tables.grid.shape[0]):
+        for column in range(tables.grid.shape[1]):
+            points[tables.grid[ring, column], 1] += tables.fall[ring] * move[column]
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _push_apart(
+    tables: ContactTables,
+    own: Indices,
+    other: Indices,
+    at_rest: Floats,
+    sign: np.float32,
+    points: Floats,
+    own_push: Floats,
+    other_push: Floats,
+) -> bool:
+    touched = False
+    across, up = _rings(tables, other, points)
+    for ring in range(tables.first, tables.last + 1):
+        for k in range(1, own.shape[0] - 1):
+            vertex = tables.grid[ring, own[k]]
+            for facing in range(across.shape[0]):
+                overlap, second, part, inside = _overlap(across[facing], up[facing], points[vertex], sign)
+                near = min(_ONE, inside / CORNER)
+                push = _HALF * (overlap - at_rest[k]) * near * near
+                if push <= _ZERO or inside <= _ZERO:
+                    continue
+                touched = True
+                a, b = other[second - 1], other[second]
+                own_push[own[k]] = max(own_push[own[k]], push)
+                other_push[a] = max(other_push[a], push * SPREAD * min(_ONE, STEEP * (_ONE - part)))
+                other_push[b] = max(other_push[b], push * SPREAD * min(_ONE, STEEP * part))
+    return touched
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _rings(tables: ContactTables, columns: Indices, points: Floats) -> Any:
+    """``(rings, K)`` m twice: x and y of the rings that may touch, in these columns."""
+    across = np.empty((tables.last + 1 - tables.first, columns.shape[0]), np.float32)
+    up = np.empty_like(across)
+    for ring in range(across.shape[0]):
+        for j in range(columns.shape[0]):
+            vertex = tables.grid[tables.first + ring, columns[j]]
+            across[ring, j], up[ring, j] = points[vertex, 0], points[vertex, 1]
+    return across, up
+
+
+@njit(cache=True, nogil=True, error_model="numpy", inline="always")
+def _overlap(across: Floats, up: Floats, place: Floats, sign: np.float32) -> Any:
+    x = place[0]
+    last = across.shape[0] - 1
+    second = 1
+    for j in range(1, last):
+        if across[j] >= x:
+            second += 1
+    one, other = across[second - 1], across[second]
+    part = min(_ONE, max(_ZERO, (one - x) / max(one - other, _CLOSEST)))
+    there = up[second - 1] + part * (up[second] - up[second - 1])
+    inside = -max(x - across[0], across[last] - x)
+    return sign * (there - place[1]) - max(-inside, _ZERO), second, part, inside

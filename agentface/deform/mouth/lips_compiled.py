@@ -1,0 +1,95 @@
+"""The lips' loops; their numpy twins are in :mod:`agentface.deform.mouth.lips`."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numba import njit
+
+from agentface.conventions import Floats, Indices
+from agentface.deform.mouth import lips
+from agentface.deform.mouth.lip_surface import COLUMNS, ROWS
+from agentface.deform.mouth.lips import RED, THINNED, LipTables
+
+_CONTROLS = COLUMNS * ROWS
+_ZERO, _HALF, _ONE = np.float32(0.0), np.float32(0.5), np.float32(1.0)
+_THINNED = np.array(THINNED)
+_thinning = njit(cache=True, nogil=True, error_model="numpy")(lips.thinning)
+
+
+@njit(cache=True, nogil=True, error_model="numpy", inline="always")
+def _mean(controls: Indices, weights: Floats, row: int, count: int, moved: Floats) -> tuple[Any, Any, Any]:
+    """The movements ``moved (C, 3)`` of a row of ``controls (N, K)``, by ``weights (N, K)``.
+
+    ``count`` is K, which the compiler has to know to unroll the loop.
+    """
+    x, y, z = _ZERO, _ZERO, _ZERO
+    for j in range(count):
+        i, weight = controls[row, j], weights[row, j]
+        x += weight * moved[i, 0]
+        y += weight * moved[i, 1]
+        z += weight * moved[i, 2]
+    return x, y, z
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def contract(tables: LipTables, values: Floats, points: Floats) -> None:
+    """Orbicularis oris moves the control points and the skin at the patch's edge; as its twin."""
+    pucker, press = values[tables.parameters[0]], values[tables.parameters[1]]
+    start = tables.skin_count
+    left, right = points[start + RED[0], 0], points[start + ROWS * (COLUMNS // 2) + RED[0], 0]
+    thinner = _thinning(left - right, tables.width) * max(_ZERO, _ONE - pucker - press)
+    if pucker == _ZERO and press == _ZERO and thinner == _ZERO:
+        return
+    beyond = max(0.0, (press - tables.roll_from) / (1.0 - tables.roll_from))
+    roll = np.float32(beyond * beyond)
+    moved = np.empty((_CONTROLS, 3), np.float32)
+    for i in range(_CONTROLS):
+        row = i % ROWS
+        red, other, share = start + i - row + RED[0], start + i - row + RED[1], thinner * _THINNED[row]
+        x, y, home = points[start + i, 0], points[start + i, 1], tables.control_rest[i, 1]
+        across = pucker * (tables.shift[0, i, 0] + tables.pull[0, i] * (tables.target[0, i, 0] - x))
+        across += press * (tables.shift[1, i, 0] + tables.pull[1, i] * (tables.target[1, i, 0] - x))
+        across += roll * (tables.shift[2, i, 0] + tables.pull[2, i] * (tables.target[2, i, 0] - x))
+        up = pucker * (tables.shift[0, i, 1] + tables.pull[0, i] * (tables.target[0, i, 1] - home))
+        up += press * (tables.shift[1, i, 1] + tables.pull[1, i] * (tables.target[1, i, 1] - home))
+        up += roll * (tables.shift[2, i, 1] + tables.pull[2, i] * (tables.target[2, i, 1] - home))
+        ahead = pucker * tables.shift[0, i, 2] + press * tables.shift[1, i, 2] + roll * tables.shift[2, i, 2]
+        up -= share * (y - _HALF * (points[red, 1] + points[other, 1]))
+        ahead -= share * (points[start + i, 2] - _HALF * (points[red, 2] + points[other, 2]))
+        moved[i, 0], moved[i, 1], moved[i, 2] = across, up, ahead
+    for k in range(tables.rim.shape[0]):
+        row = tables.rim[k]
+        x, y, z = _mean(tables.controls, tables.weight, row, 16, moved)
+        vertex = tables.patch[row]
+        points[vertex, 0] += x
+        points[vertex, 1] += y
+        points[vertex, 2] += z
+    for k in range(tables.skirt.shape[0]):
+        x, y, z = _mean(tables.skirt_index, tables.skirt_weight, k, 4, moved)
+        vertex = tables.skirt[k]
+        points[vertex, 0] += x
+        points[vertex, 1] += y
+        points[vertex, 2] += z
+    for i in range(_CONTROLS):
+        points[start + i, 0] += moved[i, 0]
+        points[start + i, 1] += moved[i, 1]
+        points[start + i, 2] += moved[i, 2]
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def surface(tables: LipTables, points: Floats) -> None:
+    """The vertices of the patch take the surface's movement; as its twin."""
+    start = tables.skin_count
+    moved = np.empty((_CONTROLS, 3), np.float32)
+    for i in range(_CONTROLS):
+        moved[i, 0] = points[start + i, 0] - tables.control_rest[i, 0]
+        moved[i, 1] = points[start + i, 1] - tables.control_rest[i, 1]
+        moved[i, 2] = points[start + i, 2] - tables.control_rest[i, 2]
+    for row in range(tables.patch.shape[0]):
+        x, y, z = _mean(tables.controls, tables.weight, row, 16, moved)
+        vertex, blend = tables.patch[row], tables.blend[row]
+        points[vertex, 0] += blend * (tables.rest[row, 0] + x - points[vertex, 0])
+        points[vertex, 1] += blend * (tables.rest[row, 1] + y - points[vertex, 1])
+        points[vertex, 2] += blend * (tables.rest[row, 2] + z - points[vertex, 2])

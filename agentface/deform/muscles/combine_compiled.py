@@ -1,0 +1,179 @@
+"""The vector muscles' loop, single precision; its numpy twins are in :mod:`agentface.deform.muscles.combine`."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numba import njit
+
+from agentface.conventions import Doubles, Floats, Indices
+from agentface.deform.muscles.combine import NOTHING
+from agentface.deform.simd import (
+    WIDTH,
+    inverse_root,
+    larger,
+    largest,
+    load,
+    smaller,
+    splat,
+    store,
+    tile,
+    where_positive,
+)
+
+LANES = WIDTH
+"""Vertices a block."""
+FIELDS = 12
+"""Constants a muscle."""
+
+_F = np.float32
+_ZERO, _ONE = _F(0.0), _F(1.0)
+_MARGIN = _F(1e-5)  # m, wider than the rounding of a sum of displacements
+# Keeps 1 / distance finite at a muscle's origin; its root, 1e-10 m, is far below single precision here.
+_TINY = _F(1e-20)
+# cos(pi/2 u) = (1 - u^2) (1 + Q1 u^2 + Q2 u^4 + Q3 u^6) on 0..1, exact at both ends, fitted to 6e-8.
+_Q1, _Q2, _Q3 = _F(-0.2336987033), _F(0.0199532354), _F(-0.0008582032)
+
+
+@njit(cache=True, nogil=True)
+def slice_steps(contractions: Doubles, step: float, parts: Floats) -> int:
+    """Fills ``parts (S, M)`` with slices of at most ``step``; returns the first contraction not in 0..1, or -1."""
+    for muscle in range(contractions.shape[0]):
+        contraction = contractions[muscle]
+        if not 0.0 <= contraction <= 1.0:
+            return muscle
+        for index in range(parts.shape[0]):
+            left = contraction - index * step if index else contraction
+            parts[index, muscle] = min(step, left) if left > NOTHING else 0.0
+    return -1
+
+
+@njit(cache=True, nogil=True)
+def spread(contractions: Doubles, step: float, parts: Floats) -> int:
+    """Fills the diagonal of ``parts (M, M)``: one muscle a step; returns as :func:`slice_steps` does."""
+    for muscle in range(contractions.shape[0]):
+        contraction = contractions[muscle]
+        if not 0.0 <= contraction <= 1.0:
+            return muscle
+        parts[muscle, muscle] = contraction
+    return -1
+
+
+@njit(cache=True, nogil=True)
+def contract(
+    rest: Floats,
+    home: Floats,
+    vertex: Indices,
+    first: Indices,
+    owner: Indices,
+    slack: Floats,
+    strongest: Floats,
+    pull: Floats,
+    fibre: Floats,
+    parts: Floats,
+    out: Floats,
+) -> None:
+    """Moves the vertices by a schedule of contractions; shapes as in :class:`agentface.deform.muscles.blocks.Blocks`.
+
+    Args:
+        rest: ``(V, 3)`` m.
+        home: ``(B, 3 * LANES)`` m, rest positions by block: all x, all y, all z.
+        vertex: ``(B, LANES)``, the vertex of each lane.
+        first: ``(B + 1,)``, the range of pairs of each block.
+        owner: ``(P,)``, the muscle of each pair.
+        slack: ``(P,)`` m, rising within a block: how far its vertices travel before one meets the muscle.
+        strongest: ``(P,)`` m, the largest of ``pull``.
+        pull: ``(P, LANES)`` m, elasticity times reach.
+        fibre: ``(M, FIELDS, PART)``, a muscle's constants, each as often as a register has lanes.
+        parts: ``(S, M)``, what contracts in each step.
+        out: ``(V, 3)`` m.
+    """
+    still, moved = rest.ravel(), out.ravel()
+    for index in range(still.shape[0]):
+        moved[index] = still[index]
+    whole = np.zeros(parts.shape[1], dtype=np.float32)
+    acts = np.zeros(parts.shape[1], dtype=np.int64)
+    for step in range(parts.shape[0]):
+        for muscle in range(parts.shape[1]):
+            whole[muscle] += parts[step, muscle]
+            acts[muscle] |= parts[step, muscle] > _ZERO
+    lanes = np.empty(3 * LANES, dtype=np.float32)
+    pairs = np.empty(parts.shape[1] + 1, dtype=np.int32)
+    muscles = np.empty(parts.shape[1] + 1, dtype=np.int32)
+    bounds = np.empty(parts.shape[1] + 1, dtype=np.float32)
+    for block in range(home.shape[0]):
+        count = 0
+        travel = _MARGIN
+        for pair in range(first[block], first[block + 1]):
+            if slack[pair] > travel:
+                break
+            muscle = owner[pair]
+            pairs[count], muscles[count], bounds[count] = pair, muscle, slack[pair]
+            count += acts[muscle]
+            travel += whole[muscle] * strongest[pair]
+        if count and bounds[0] == _ZERO:
+            contract_block(home, block, pairs, muscles, bounds, count, pull, fibre, parts, lanes)
+            for lane in range(LANES):
+                row = vertex[block, lane]
+                out[row, 0] = lanes[lane]
+                out[row, 1] = lanes[LANES + lane]
+                out[row, 2] = lanes[2 * LANES + lane]
+
+
+@njit(cache=True, nogil=True, fastmath=True, error_model="numpy")
+def contract_block(
+    home: Floats,
+    block: int,
+    pairs: Indices,
+    muscles: Indices,
+    bounds: Floats,
+    count: int,
+    pull: Floats,
+    fibre: Floats,
+    parts: Floats,
+    lanes: Floats,
+) -> None:
+    """Writes to ``lanes`` where the schedule takes one block by the first ``count`` of ``pairs``, nearest first.
+
+    A muscle that the block has not travelled far enough to meet is left out, and those behind it with it. The radial
+    fall-off needs no branch: of its rising and falling argument the larger is the one that holds.
+    """
+    start = block * 3 * LANES
+    hx, hy, hz = load(home, start), load(home, start + LANES), load(home, start + 2 * LANES)
+    px, py, pz = hx, hy, hz
+    travel = _ZERO
+    for step in range(parts.shape[0]):
+        dx, dy, dz = splat(_ZERO), splat(_ZERO), splat(_ZERO)
+        for index in range(count):
+            if bounds[index] > travel:
+                break
+            muscle = muscles[index]
+            part = parts[step, muscle]
+            if part == _ZERO:
+                continue
+            at = muscle * FIELDS
+            x, y, z = px - tile(fibre, at), py - tile(fibre, at + 1), pz - tile(fibre, at + 2)
+            square = z * z + (y * y + (x * x + _TINY))
+            inverse = inverse_root(square)
+            distance = square * inverse
+            along = x * tile(fibre, at + 3) + y * tile(fibre, at + 4) + z * tile(fibre, at + 5)
+            angular = along * inverse + tile(fibre, at + 6)
+            base = fibre[muscle, 11, 0]
+            if base == _ZERO:
+                angular = larger(angular, splat(_ZERO))
+            else:
+                angular = where_positive(angular, angular * tile(fibre, at + 10) + base)
+            rising = _ONE - distance * tile(fibre, at + 7)
+            falling = distance * tile(fibre, at + 8) - tile(fibre, at + 9)
+            u = smaller(larger(rising, falling), splat(_ONE))
+            q = u * u
+            radial = (_ONE - q) * (_ONE + q * (_Q1 + q * (_Q2 + q * _Q3)))
+            weight = load(pull, pairs[index] * LANES) * part * inverse * angular * radial
+            dx, dy, dz = dx + weight * x, dy + weight * y, dz + weight * z
+        px, py, pz = px - dx, py - dy, pz - dz
+        x, y, z = px - hx, py - hy, pz - hz
+        travel = _F(math.sqrt(largest(x * x + y * y + z * z)))
+    store(lanes, 0, px)
+    store(lanes, LANES, py)
+    store(lanes, 2 * LANES, pz)

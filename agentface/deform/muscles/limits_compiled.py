@@ -1,0 +1,36 @@
+"""The limits of travel and squash, single precision; the numpy twin is :mod:`agentface.deform.muscles.limits`."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numba import njit
+
+from agentface.conventions import Floats
+from agentface.deform.muscles import squash_compiled as squash
+from agentface.deform.muscles.limits import LimitTables
+
+_ONE = np.float32(1.0)
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def apply(tables: LimitTables, points: Floats) -> None:
+    """Bound the squash and the travel of ``points (P, 3)`` m in place; points within the bounds stay as they are."""
+    squash.apply(tables.squash, points)
+    rest, limits = tables.rest, tables.limit
+    knee, above = np.float32(tables.knee), np.float32(1.0 - tables.knee)
+    for point in range(rest.shape[0]):
+        x = points[point, 0] - rest[point, 0]
+        y = points[point, 1] - rest[point, 1]
+        z = points[point, 2] - rest[point, 2]
+        square = x * x + y * y + z * z
+        inside = knee * limits[point]
+        if square > inside * inside:
+            far = np.float32(math.sqrt(square))
+            limit = limits[point]
+            s = (far / limit - knee) / above
+            scale = limit * (knee + above * s / (_ONE + s)) / far
+            points[point, 0] = rest[point, 0] + scale * x
+            points[point, 1] = rest[point, 1] + scale * y
+            points[point, 2] = rest[point, 2] + scale * z

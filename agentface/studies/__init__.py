@@ -1,0 +1,1 @@
+"""What measures and shows the engine: benchmarks, figures, calibration. Only commands import it."""

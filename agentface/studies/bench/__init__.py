@@ -1,0 +1,35 @@
+"""The benchmarks: each times a part of agentface and what one would use instead, side by side in one run."""
+
+from __future__ import annotations
+
+from importlib import import_module
+from inspect import signature
+from pathlib import Path
+from typing import Any
+
+from agentface.errors import UnknownNameError
+from agentface.resources import DEFAULT_FACE
+
+BENCHES: dict[str, str] = {
+    "deform": "the muscles of one face, beside plain loops and a blendshape product",
+    "fuzzy": "one inference of the rules, beside scikit-fuzzy",
+    "papers": "the paper's Table 1: its loops with and without its improvements, and ours",
+    "frame": "the whole face, beside a blendshape product with normals, and how it grows with the mesh",
+    "crowd": "many faces in one call, on one thread and on two",
+    "render": "a picture in both qualities and two sizes, stage by stage, beside clearing and reading one back",
+    "texture": "a picture worn as skin: how finely it lies, how emotions strain it, what drawing it costs",
+}
+"""The benchmarks and what they compare; each is a module of this package with ``run() -> dict``."""
+
+
+def run(name: str, face: str | Path = DEFAULT_FACE) -> dict[str, Any]:
+    """The figures of one benchmark, units in the key names; on ``face`` where it needs one; raises UnknownNameError."""
+    from agentface.head.model import load_model
+
+    if name not in BENCHES:
+        raise UnknownNameError("benchmark", name, tuple(BENCHES))
+    bench = import_module(f"agentface.studies.bench.{name}").run
+    figures: dict[str, Any] = (
+        bench(model=load_model(face, asymmetry=0.0)) if "model" in signature(bench).parameters else bench()
+    )
+    return figures

@@ -1,0 +1,24 @@
+"""The figures of the documents: each module draws some, side by side with the papers' where they have the same."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from importlib import import_module
+from pathlib import Path
+
+FIGURES: dict[str, str] = {
+    "lips": "Figures 2 and 6: the lips' surface and its control points, and orbicularis oris",
+    "combination": "Figures 4 and 5: one, two and three muscles, combined in three ways",
+    "eyes": "Figures 7 and 8: closing one eye, closing both; and the squeeze that closes",
+    "jaw": "the jaw's opening, from closed to wide",
+    "wrinkles": "Figures 11 and 12: shading normals at the wrinkles' feet, and wrinkles on mesh and forehead",
+    "texture": "a picture worn as skin",
+    "expressions": "Figures 13 to 16: neutral, surprise, happiness, sadness",
+}
+"""The figures and what they show; each is a module of this package with ``figures(face) -> {file name: PNG}``."""
+
+
+def draw(face: str | Path, names: tuple[str, ...] = tuple(FIGURES)) -> Iterator[tuple[str, bytes]]:
+    """File name and content of every picture of the figures ``names``, one after the other as they are drawn."""
+    for name in names:
+        yield from import_module(f"agentface.studies.figures.{name}").figures(face).items()

@@ -1,0 +1,1 @@
+"""OpenGL: the context, programs, framebuffers, what all shaders share."""

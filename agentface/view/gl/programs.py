@@ -1,0 +1,95 @@
+"""The compiled shaders of a renderer, with what stays the same in every picture set."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from agentface.head.look import Look
+from agentface.view.gl.context import compile_program
+from agentface.view.gl.quality import TIERS
+
+FRAME_BINDING = 0
+_SLOTS = {
+    "skin_fields": 0,
+    "picture": 0,
+    "noise_volume": 1,
+    "key_depth": 2,
+    "wrinkle_atlas": 3,
+    "skin_picture": 4,
+    "pores": 5,
+}
+_SHADERS = {
+    "part": ("part", "part"),
+    "cloth": ("cloth", "cloth"),
+    "eye": ("eye", "eye"),
+    "ribbon": ("ribbon", "ribbon"),
+    "strand": ("strand", "strand"),
+    "sheet": ("sheet", "sheet"),
+    "lining": ("anchored", "part"),
+    "cap": ("cap", "cap"),
+    "background": ("screen", "background"),
+    "copy": ("screen", "copy"),
+}
+
+
+class Programs:
+    """Programs by name; a skin's has the names of its shaders, and ``-wrinkled`` behind them where it is.
+
+    ``textured``: skins wear a picture.
+    """
+
+    def __init__(self, context: Any, *, textured: bool = False) -> None:
+        self._context = context
+        self._programs = {name: self._compile(*shaders) for name, shaders in _SHADERS.items()}
+        self.depth = self._compile("depth", None)
+        for tier in TIERS.values():
+            worn = ("TEXTURED",) if textured else ()
+            self._programs[tier.skin] = self._compile(tier.skin, tier.skin, worn)
+            self._programs[f"{tier.skin}-wrinkled"] = (
+                self._compile(tier.skin, tier.skin, (*worn, "WRINKLED")) if tier.fine else self._programs[tier.skin]
+            )
+
+    def __getitem__(self, name: str) -> Any:
+        return self._programs[name]
+
+    def skins(self, skin: str) -> tuple[Any, Any]:
+        """The programs of a skin that is smooth, and of one with wrinkles."""
+        return self._programs[skin], self._programs[f"{skin}-wrinkled"]
+
+    def set(self, values: dict[str, Any]) -> None:
+        """Give the uniforms of these names their values, in all programs that have them."""
+        for program in self._programs.values():
+            for name, value in values.items():
+                if name in program:  # a compiler drops what a shader does not use
+                    program[name].value = tuple(value) if isinstance(value, list) else value
+
+    def wear(self, look: Look) -> None:
+        """Set the colours of ``look``."""
+        self.set(
+            {
+                "skin_tone": look.skin.tone,
+                "lip_tint": look.skin.lips,
+                "shine": look.skin.shine,
+                "hair_colour": look.hair.colour,
+                "cloth": look.cloth,
+                "teeth": look.teeth,
+                "iris_inner": look.eyes.iris_inner,
+                "iris_outer": look.eyes.iris_outer,
+                "sclera": look.eyes.sclera,
+                "pupil_radius": look.eyes.pupil,
+                "background_inner": look.background_inner,
+                "background_outer": look.background_outer,
+                "exposure": look.exposure,
+            }
+        )
+
+    def _compile(self, vertex: str, fragment: str | None, defines: tuple[str, ...] = ()) -> Any:
+        program = compile_program(
+            self._context, f"{vertex}.vert.glsl", fragment and f"{fragment}.frag.glsl", defines=defines
+        )
+        for name, slot in _SLOTS.items():
+            if name in program:
+                program[name].value = slot
+        if "Frame" in program:
+            program["Frame"].binding = FRAME_BINDING
+        return program

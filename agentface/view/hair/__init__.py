@@ -1,0 +1,1 @@
+"""Hair: where it grows, how it is groomed, how it is drawn."""

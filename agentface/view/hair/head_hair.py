@@ -1,0 +1,95 @@
+"""The hair of the head on the GPU: a dark layer on the scalp, and strands grown when a quality is first drawn."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from agentface.conventions import Doubles, Floats
+from agentface.head.look import HairLook
+from agentface.head.model import HeadModel
+from agentface.view.camera import Camera
+from agentface.view.gl.programs import Programs
+from agentface.view.gl.quality import tier_named
+from agentface.view.hair.cap import Cap, scalp_cap
+from agentface.view.hair.groom import grow
+from agentface.view.hair.hairline import Hairline
+from agentface.view.hair.hull import Hull
+from agentface.view.hair.sheets import Sheet, SheetArray, edge_shade, flyaways, parting_line, sheets
+from agentface.view.hair.strands import StrandArray
+from agentface.view.hair.styles import PARTED, STYLES
+
+_SEED = 20
+_STREAKS = {"fast": 6.0, "portrait": 7.0}
+_NARROWEST = {"fast": 0.9, "portrait": 0.5}
+_GLOSS = {"cropped": 0.25, "swept": 0.8, "bob": 0.9, "bun": 0.9}
+_NO_PARTING = 1.0, 1.0, 1.0, 1.0
+"""The uniform ``parting`` of ``shaders/cap.frag.glsl``, far from the head."""
+
+
+class HeadHair:
+    """Hair of any style but ``none``."""
+
+    def __init__(self, context: Any, programs: Programs, model: HeadModel, look: HairLook) -> None:
+        cap, strand, sheet = (programs[name] for name in ("cap", "strand", "sheet"))
+        self._context, self._program, self._model, self._look = context, strand, model, look
+        mesh = scalp_cap(model, Hairline(model, look.hairline), look)
+        self._cap = Cap(context, cap, mesh, model.vertices)
+        self._strands: dict[str, StrandArray] = {}
+        cap["hair_colour"].value = tuple(look.colour)
+        cap["coils"].value = float(look.style == "cropped")
+        cap["parting"].value = _NO_PARTING
+        self._centre = np.array([0.0, 0.4 * model.landmarks.eye_separation, -0.012])
+        strand["hair_centre"].value = tuple(self._centre)
+        self._sheets: SheetArray | None = None
+        self._grown: list[Sheet] = []
+        if look.style in PARTED:
+            hull = Hull(model, ears=True)
+            line = parting_line(model, look, hull)
+            cap["parting"].value = tuple(line[[0, 0, -1, -1], [0, 2, 0, 2]])
+            self._grown = sheets(model, look, hull, np.random.default_rng(_SEED))
+            self._sheets = SheetArray(context, sheet, self._grown, model, self._centre)
+            sheet["hair_colour"].value = tuple(look.colour)
+        programs.set({"gloss": _GLOSS[look.style]})
+
+    def shade(self, skin: Floats) -> Doubles:
+        """``(V,)`` 0..1: the part of the surroundings' light that hair at the face keeps off the ``skin (V, 3)``."""
+        return edge_shade(self._grown, skin)
+
+    def draw_solid(self, quality: str, camera: Camera, head: Floats) -> None:
+        """Draw what hides what is behind it, seen by ``camera`` with the head turned by ``head (4, 4)``."""
+        eye: Doubles = np.linalg.solve(head.astype(np.float64), np.array([*camera.eye, 1.0]))[:3]
+        self._program["narrowest"].value = _NARROWEST[quality]
+        self._program["streaks"].value = _STREAKS[quality]
+        if self._sheets is not None:
+            self._sheets.draw(eye, fine=tier_named(quality).fine)
+        self._strands_for(quality).draw_solid(eye)
+        self._context.enable(self._context.CULL_FACE)
+        self._cap.draw_solid()
+        self._context.disable(self._context.CULL_FACE)
+
+    def draw_inside(self) -> None:
+        """Draw hair that is seen from inside, after the skin."""
+        if self._sheets is not None:
+            self._sheets.draw_inside()
+
+    def draw_soft(self, quality: str, onto: Any) -> None:
+        """Draw what blends, after everything solid, into the framebuffer ``onto``; after :meth:`draw_solid`."""
+        self._context.enable(self._context.CULL_FACE)
+        self._cap.draw_soft()
+        self._context.disable(self._context.CULL_FACE)
+        onto.depth_mask = False  # a nearly clear hair hides nothing
+        self._strands_for(quality).draw_fine()
+        onto.depth_mask = True
+
+    def _strands_for(self, quality: str) -> StrandArray:
+        if quality not in self._strands:
+            model, look, rng = self._model, self._look, np.random.default_rng(_SEED)
+            if self._grown:
+                growth = flyaways(self._grown, STYLES[look.style].amounts[quality], look, rng)
+                strands = growth.strands(model)
+            else:
+                strands = grow(model, model.normals, look, quality, rng)
+            self._strands[quality] = StrandArray(self._context, self._program, strands, model, self._centre)
+        return self._strands[quality]

@@ -1,0 +1,1 @@
+"""What is neither skin nor hair: eyeballs, teeth, tongue, linings."""

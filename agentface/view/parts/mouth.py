@@ -1,0 +1,79 @@
+"""Teeth and tongue, and how much light the lips let in."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from agentface.conventions import Floats
+from agentface.deform.geometry import FaceGeometry
+from agentface.head.model import HeadModel
+from agentface.head.ring_names import LipRing
+from agentface.view.parts.rigid import RigidPart
+from agentface.view.parts.teeth import crown_places
+
+_SHADED = 0.25  # of the light on the lower jaw, which the upper lip and the nose keep off
+_COLUMNS = np.linspace(0.2, 0.8, 7)  # where the gap is looked at: parts of the way from corner to corner
+_MIDDLE = len(_COLUMNS) // 2
+
+
+class Mouth:
+    """What is behind the lips, on the GPU."""
+
+    def __init__(self, context: Any, program: Any, model: HeadModel) -> None:
+        self._model, self._program = model, program
+        self._parts = {name: _part(context, program, model, name) for name in ("teeth_upper", "teeth_lower", "tongue")}
+        ring = model.lips.rings[LipRing.LINING]
+        self._corners = ring.upper[0], ring.upper[-1]
+        touching = model.lips.rings[: LipRing.RED + 1]
+        self._upper, self._lower = (
+            np.array([[half[round(at * (len(half) - 1))] for at in _COLUMNS] for half in halves])
+            for halves in ([ring.upper for ring in touching], [ring.lower for ring in touching])
+        )
+        self._bow = 1.0 - (2.0 * _COLUMNS - 1.0) ** 2  # an opening between two bows
+        self._at_rest = self._gap(*self._edges(model.vertices))
+
+    def draw(self, geometry: FaceGeometry) -> None:
+        """Draw it as ``geometry`` has it."""
+        self._program["shaded"].value = 0.0
+        self._parts["teeth_upper"].draw(geometry.head)
+        self._program["shaded"].value = _SHADED
+        for name in ("teeth_lower", "tongue"):
+            self._parts[name].draw(geometry.head @ geometry.jaw)
+
+    def opening(self, geometry: FaceGeometry) -> dict[str, object]:
+        """The uniforms of ``shaders/mouth.glsl``."""
+        vertices = geometry.vertices
+        half = 0.5 * float(vertices[self._corners[0], 0] - vertices[self._corners[1], 0])
+        front = 0.5 * float(vertices[self._upper[0], 2].mean() + vertices[self._lower[0], 2].mean())
+        corner = vertices[list(self._corners), 1:].mean(0)
+        upper, lower = self._edges(vertices)
+        middle, gap = 0.5 * (float(upper[_MIDDLE]) + float(lower[_MIDDLE])), self._gap(upper, lower)
+        return {
+            "mouth_light": self._light(gap),
+            "mouth_opening": (middle + 0.5 * gap, middle - 0.5 * gap, abs(half), front),
+            "mouth_bow": (front - float(corner[1]), float(corner[0]) - middle),
+        }
+
+    def _edges(self, vertices: Floats) -> tuple[Floats, Floats]:
+        """Heights of the lips' edges by column, m: of the rings that may touch, where least light comes through."""
+        return vertices[self._upper, 1].min(axis=0), vertices[self._lower, 1].max(axis=0)
+
+    def _light(self, gap: float) -> float:
+        """The part of the light that reaches the teeth: all through a mouth open by a finger, little through a slit."""
+        opened = (gap - self._at_rest) / (0.12 * self._model.landmarks.eye_separation)
+        return min(1.0, 0.03 + 0.97 * max(0.0, opened))
+
+    def _gap(self, upper: Floats, lower: Floats) -> float:
+        """How high the middle of an opening between two bows is that lets through as much as these edges do, m."""
+        return float(np.maximum(upper - lower, 0.0) @ self._bow / (self._bow @ self._bow))
+
+
+def _part(context: Any, program: Any, model: HeadModel, name: str) -> RigidPart:
+    mesh = model.parts[name]
+    material = mesh.attributes["_MATERIAL"].astype(np.float32) / np.float32(255)
+    material[:, 3] = 0.0
+    positions = mesh.attributes["POSITION"]
+    detail = crown_places(positions, mesh.triangles, material[:, 0])
+    return RigidPart(context, program, positions, mesh.triangles, material, detail)

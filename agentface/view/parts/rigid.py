@@ -1,0 +1,75 @@
+"""Draws the meshes that only move rigidly: teeth, tongue, cloth and eyeballs."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from agentface.conventions import Floats, Indices
+from agentface.deform.geometry import FaceGeometry
+from agentface.head.model import HeadModel
+from agentface.head.ring_names import LidRing
+from agentface.mesh.normals import vertex_normals
+
+
+class RigidPart:
+    """A static mesh on the GPU: position, normal and material of each vertex, and where it lies on a tooth or shirt."""
+
+    def __init__(
+        self, context: Any, program: Any, vertices: Floats, triangles: Indices, material: Floats, detail: Floats
+    ) -> None:
+        self.program = program
+        fields = {
+            "place": vertices,
+            "facing": vertex_normals(vertices, triangles),
+            "material": material,
+            "detail": detail,
+        }
+        layout = [
+            (context.buffer(field.astype(np.float32).tobytes()), f"{field.shape[1]}f", name)
+            for name, field in fields.items()
+            if name in program  # a compiler drops what a shader does not use
+        ]
+        self.array = context.vertex_array(program, layout, context.buffer(triangles.astype(np.int32).tobytes()))
+
+    def draw(self, moved: Floats) -> None:
+        """Draw it moved by ``(4, 4)``."""
+        self.program["moved"].write(np.asarray(moved, np.float32).T.tobytes())
+        self.array.render()
+
+
+class Eyeball:
+    """One eye: turned about its centre, shaded by the lids as they are now."""
+
+    def __init__(self, context: Any, program: Any, model: HeadModel, side: str) -> None:
+        self.program, self.index = program, "lr".index(side)
+        self.centre, self.radius = model.eye_centre(side), np.float32(model.eyes.radius)
+        mesh = model.parts[f"eye_{side}"]
+        places = (mesh.attributes["POSITION"] - self.centre) / self.radius
+        rows = np.concatenate([places, vertex_normals(places, mesh.triangles)], axis=1).astype(np.float32)
+        layout = [(context.buffer(rows.tobytes()), "3f 3f", "place", "facing")]
+        self.array = context.vertex_array(program, layout, context.buffer(mesh.triangles.tobytes()))
+        ring = model.eyelids.rings[side][LidRing.WET_LINE]
+        self.lids = [np.array(half, np.int32) for half in (ring.upper, ring.lower)]
+
+    def draw(self, geometry: FaceGeometry) -> None:
+        """Draw it as ``geometry`` has it."""
+        turned = np.eye(4, dtype=np.float32)
+        turned[:3, :3] = geometry.eye_rotations[self.index] * self.radius
+        turned[:3, 3] = self.centre
+        placed = geometry.head @ turned
+        margins = [(geometry.vertices[half] - self.centre) / self.radius for half in self.lids]
+        for name, margin in zip(("upper_lid", "lower_lid"), margins, strict=True):
+            self.program[name].value = tuple(_parabola(margin[:, 0], margin[:, 1]))
+        xs = np.concatenate([margin[:, 0] for margin in margins])
+        self.program["corners"].value = float(xs.min()), float(xs.max())
+        self.program["turned"].write(np.ascontiguousarray(placed.T, np.float32).tobytes())
+        self.program["centre"].value = tuple(placed[:3, 3].tolist())
+        self.program["radius"].value = float(self.radius)
+        self.array.render()
+
+
+def _parabola(x: Floats, y: Floats) -> list[float]:
+    rows = np.stack([np.ones_like(x), x, x * x], axis=1).astype(np.float64)
+    return [float(value) for value in np.linalg.solve(rows.T @ rows + 1e-6 * np.eye(3), rows.T @ y)]

@@ -1,0 +1,1 @@
+"""The skin in pictures, with fine lips, wrinkles and the shirt."""

@@ -1,0 +1,120 @@
+"""The skin on the GPU: one texture a frame, from which everything that lies on the skin finds its place."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from agentface.conventions import Floats, Indices
+from agentface.deform.finish.neck import Neck
+from agentface.deform.geometry import FaceGeometry
+from agentface.errors import InvalidValueError
+from agentface.head.model import HeadModel
+from agentface.mesh.refine import Refined, refine, unrefined
+from agentface.view.skin.complexion import blurred, softened_corners
+from agentface.view.skin.fine_lips import FineLips
+from agentface.view.skin.shirt import uncovered
+
+_COLUMNS = 256
+_BLUR = 14
+
+
+class SkinFields:
+    """The texture ``skin_fields`` of ``shaders/surface.glsl``: positions and wrinkles, then normals.
+
+    The vertices of ``lips`` come behind those of the skin.
+    """
+
+    def __init__(self, context: Any, model: HeadModel, lips: FineLips) -> None:
+        self.count, self._lips, self._neck = len(model.vertices), lips, Neck(model)
+        rows = -(-(self.count + lips.count) // _COLUMNS)
+        self._texels = np.zeros((2, rows * _COLUMNS, 4), np.float32)
+        self.texture = context.texture((_COLUMNS, 2 * rows), 4, dtype="f4")
+        self.texture.filter = (context.NEAREST, context.NEAREST)
+
+    def update(self, geometry: FaceGeometry) -> None:
+        """Upload a frame; raises InvalidValueError for a geometry of another mesh."""
+        expected = (self.count, 3)
+        for name in ("vertices", "smooth_normals"):
+            if getattr(geometry, name).shape != expected:
+                raise InvalidValueError(
+                    f"geometry.{name}", f"an array of shape {expected}", getattr(geometry, name).shape
+                )
+        self._texels[0, : self.count, :3] = geometry.vertices
+        self._texels[0, : self.count, 3] = geometry.wrinkles
+        self._texels[1, : self.count, :3] = geometry.smooth_normals
+        self._neck.hold(geometry.head, *self._texels[:, : self.count, :3])
+        self.texture.write(self._texels)
+
+    def update_lips(self, geometry: FaceGeometry) -> None:
+        """Upload the fine lips of the frame."""
+        behind = slice(self.count, self.count + self._lips.count)
+        self._texels[:, behind, :3] = self._lips.update(geometry.vertices, geometry.smooth_normals)
+        first, rows = self.count // _COLUMNS, self._texels.shape[1] // _COLUMNS
+        for half, texels in enumerate(self._texels):
+            part = texels[first * _COLUMNS :]
+            self.texture.write(part, viewport=(0, half * rows + first, _COLUMNS, rows - first))
+
+
+class SkinMeshes:
+    """The skin's static buffers, as it is and finer; drawn where ``SkinFields`` has it.
+
+    ``dressed``: those that the look makes, ``(V, 1..4)`` by the names of ``shaders/skin_place.glsl``.
+    """
+
+    def __init__(self, context: Any, model: HeadModel, lips: FineLips, dressed: dict[str, Floats]) -> None:
+        self._context, self._model, self._lips = context, model, lips
+        self._triangles = uncovered(model)
+        fields = {
+            "rest": model.vertices,
+            "soft_normal": blurred(model.normals, model.triangles, _BLUR),
+            "rest_normal": model.normals,
+            "material": softened_corners(model),
+            **dressed,
+        }
+        self._fields = [(name, field, lips.extended(field)) for name, field in fields.items()]
+
+    def coarse(self, programs: tuple[Any, Any]) -> Skin:
+        """The skin as it is."""
+        mesh = unrefined(self._triangles, len(self._model.vertices))
+        return self._skin(programs, mesh, [(name, field) for name, field, _ in self._fields])
+
+    def fine(self, programs: tuple[Any, Any], longest_m: float) -> Skin:
+        """With edges longer than ``longest_m`` cut and curved, and the lips on their spline."""
+
+        def cut(edges: Indices) -> npt.NDArray[np.bool_]:
+            a, b = self._model.vertices[edges[:, 0]], self._model.vertices[edges[:, 1]]
+            return np.asarray((np.linalg.norm(a - b, axis=1) > longest_m) | self._lips.has_edges(edges))
+
+        mesh = self._lips.mesh(refine(self._triangles, len(self._model.vertices), cut))
+        return self._skin(programs, mesh, [(name, extended) for name, _, extended in self._fields])
+
+    def _skin(self, programs: tuple[Any, Any], mesh: Refined, fields: list[tuple[str, Floats]]) -> Skin:
+        buffers = [("ends", "2i", self._context.buffer(mesh.ends.tobytes()))]
+        for name, field in fields:
+            buffers.append((name, f"{field.shape[1]}f", self._context.buffer(mesh.mean(field).tobytes())))
+        return Skin(self._context, programs, buffers, mesh.triangles)
+
+
+class Skin:
+    """A mesh of the skin, smooth or with the wrinkles that the mesh has no vertices for."""
+
+    def __init__(
+        self, context: Any, programs: tuple[Any, Any], buffers: list[tuple[str, str, Any]], triangles: Indices
+    ) -> None:
+        self._context = context
+        corners = context.buffer(triangles.astype(np.int32).tobytes())
+        self._arrays = [
+            context.vertex_array(
+                program, [(data, form, name) for name, form, data in buffers if name in program], corners
+            )
+            for program in programs
+        ]
+
+    def draw(self, *, wrinkled: bool) -> None:
+        """Draw what faces the camera of it, where ``SkinFields`` has it."""
+        self._context.enable(self._context.CULL_FACE)
+        self._arrays[wrinkled].render()
+        self._context.disable(self._context.CULL_FACE)

@@ -1,0 +1,1 @@
+"""The live window: what it shows, what keys and mouse do, its panel."""
