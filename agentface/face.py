@@ -7,13 +7,14 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cache
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NoReturn, Self
 
 import numpy as np
 
 from agentface.clock import Clock, SystemClock
 from agentface.conventions import Bytes, check_duration, check_fraction, check_range
 from agentface.deform.geometry import FaceGeometry
+from agentface.deform.protocol import DEFAULT_DEFORMER, make_deformer
 from agentface.emotion.explanation import Explanation
 from agentface.emotion.inference import default_inference
 from agentface.emotion.state import EMOTIONS, EmotionState, canonical
@@ -24,10 +25,8 @@ from agentface.parameters import MUSCLES, PARAMETERS, FacePose, parameter
 from agentface.resources import DEFAULT_FACE
 
 if TYPE_CHECKING:
-    from agentface.deform.pipeline import Deformer
     from agentface.view.renderer import Renderer
 
-DEFORMERS = ("geometric", "tissue")
 _CONTRACTED = tuple(known for known in PARAMETERS if known.kind not in ("gaze", "head"))
 
 
@@ -44,7 +43,7 @@ class Face:
 
     Args:
         face: the name of a face, the path of its folder, or a model that is already loaded.
-        deformer: ``geometric`` (Bui et al.).
+        deformer: ``geometric`` (Bui et al.), or one that a program has registered (:mod:`agentface.deform.protocol`).
         seed: of everything random in the motion; the same calls then give the same frames.
         compiled: False for numpy instead of compiled kernels: one picture is there sooner, a frame takes far longer.
         look: the name of a look of this face, or the path of its file; the face's own when None.
@@ -64,14 +63,13 @@ class Face:
         self,
         face: str | Path | HeadModel = DEFAULT_FACE,
         *,
-        deformer: str = "geometric",
+        deformer: str = DEFAULT_DEFORMER,
         seed: int = 0,
         clock: Clock | None = None,
         compiled: bool = True,
         look: str | Path | None = None,
         asymmetry: float = 1.0,
     ) -> None:
-        check_deformer(deformer)
         self.model = face if isinstance(face, HeadModel) else load_model(face, asymmetry=asymmetry)
         self.random = np.random.default_rng(seed)
         self.traffic = Traffic()
@@ -80,11 +78,14 @@ class Face:
         self._clock = clock or SystemClock()
         self._inference = default_inference(compiled=compiled)
         self._mixer = Mixer(self._inference, self.model.gains)
-        self._deformer = _deformer(self.model, compiled=compiled)
+        self._deformer = make_deformer(deformer, self.model, compiled=compiled)
         self._renderer: Renderer | None = None
         self._look = look
+        self._closed = False
         self._pose: FacePose | None = None
         self._geometry: FaceGeometry | None = None
+        self._deformer.reset(self.pose)
+        self._stepped: tuple[FacePose, FaceGeometry | None] = (self.pose, None)
         self._frame_ms = 0.0
 
     def set_emotion(
@@ -168,7 +169,7 @@ class Face:
     def step(self, dt: float) -> FaceGeometry:
         """Take in what came from outside, let ``dt`` seconds pass, and return the face as it is then.
 
-        The arrays of the geometry are valid until the next step.
+        The arrays of the geometry hold until this face's next step; ``copy()`` keeps them.
         """
         dt = check_duration("dt", dt)
         for take_in in self.inputs:
@@ -176,7 +177,8 @@ class Face:
         start = self._clock.now()
         self._mixer.advance(dt)
         self._touch()
-        geometry = self.geometry
+        geometry = self._deformer.step(self.pose, dt)
+        self._stepped = self.pose, geometry
         self._frame_ms = 1000.0 * (self._clock.now() - start)
         return geometry
 
@@ -186,8 +188,7 @@ class Face:
         Takes seconds the first time on a machine, half a second later on. Changes nothing that is shown.
         """
         self._inference.contractions({EMOTIONS[0]: 1.0})
-        self._deformer.deform(FacePose.of(**dict.fromkeys(MUSCLES, 1.0)))
-        self._geometry = None  # the deformer overwrites the arrays
+        self._deformer.at(FacePose.of(**dict.fromkeys(MUSCLES, 1.0)))
 
     @property
     def emotion(self) -> EmotionState:
@@ -217,9 +218,12 @@ class Face:
 
     @property
     def geometry(self) -> FaceGeometry:
-        """The face as shown now; its arrays are valid until the next step."""
+        """The face as shown now: as the last step left it, or at rest in a pose that was set since."""
+        stepped, geometry = self._stepped
+        if geometry is not None and np.array_equal(stepped.values, self.pose.values):
+            return geometry
         if self._geometry is None:
-            self._geometry = self._deformer.deform(self.pose)
+            self._geometry = self._deformer.at(self.pose)
         return self._geometry
 
     def render(
@@ -240,18 +244,34 @@ class Face:
             pose: draw this pose instead, for example one kept from earlier.
             alpha: leave the background out: ``(height, width, 4)`` with straight alpha.
 
-        Raises GraphicsError where the machine has no OpenGL.
+        Raises GraphicsError where the machine has no OpenGL, InvalidValueError after :meth:`close`.
         """
+        if self._closed:
+            raise InvalidValueError("Face.render", "a face that is not closed", "one after close()", "make a new Face")
         if self._renderer is None:
             from agentface.head.look import load_look
             from agentface.view.renderer import Renderer
 
             self._renderer = Renderer(self.model, load_look(self.model, self._look))
-        geometry = self.geometry
-        if pose is not None:
-            self._geometry = None  # the deformer overwrites the arrays
-            geometry = self._deformer.deform(pose)
+        geometry = self.geometry if pose is None else self._deformer.at(pose)
         return self._renderer.render(geometry, size=size, camera=camera, quality=quality, alpha=alpha)
+
+    def close(self) -> None:
+        """Give back what the face has taken from the graphics driver; it draws no more. May be called twice."""
+        self._closed = True
+        self._renderer = None
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+    def __reduce__(self) -> NoReturn:
+        raise TypeError(
+            "a Face cannot be copied or pickled: it is at work. Keep its pose, its emotion or its geometry.copy(), "
+            "or make another Face of the same model"
+        )
 
     def explain(self) -> Explanation:
         """Which rules make the contractions of the target emotions; has ``as_dict()`` and ``render()``."""
@@ -295,17 +315,3 @@ def check_angle(name: str, degrees: Any) -> float:
     known = parameter(name)
     low, high = (round(math.degrees(limit), 6) for limit in (known.low, known.high))
     return math.radians(check_range(f"{name}_deg", degrees, low, high))
-
-
-def check_deformer(name: str) -> None:
-    """Raise UnknownNameError or InvalidValueError for a deformer that this version does not have."""
-    if name not in DEFORMERS:
-        raise UnknownNameError("deformer", name, DEFORMERS)
-    if name == "tissue":
-        raise InvalidValueError("deformer", "geometric", name, "this version has no layered tissue yet")
-
-
-def _deformer(model: HeadModel, *, compiled: bool) -> Deformer:
-    from agentface.deform.pipeline import GeometricDeformer
-
-    return GeometricDeformer(model, compiled=compiled)

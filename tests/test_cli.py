@@ -88,7 +88,7 @@ def test_render_is_what_face_render_gives(tmp_path):
         (["--gaze", "80,0"], "gaze_yaw_deg"),
         (["--jaw", "2"], "jaw_open"),
         (["--face", "nobody"], "known: amber, onyx"),
-        (["--deformer", "tissue"], "no layered tissue"),
+        (["--deformer", "jelly"], "known: geometric"),
     ],
 )
 def test_render_says_what_is_wrong_and_writes_nothing(tmp_path, options, message):

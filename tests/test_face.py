@@ -1,7 +1,10 @@
 from __future__ import annotations
 
+import copy
 import json
 import math
+import pickle
+import shutil
 import subprocess
 import sys
 
@@ -12,6 +15,7 @@ import agentface
 from agentface import AgentFaceError, EmotionState, Face, FacePose
 from agentface.clock import ManualClock
 from agentface.errors import InvalidValueError, UnknownNameError
+from agentface.head.model import load_model
 from tests.heads import head_model
 
 KEYS = ["face", "emotion", "shown", "speech", "gaze_deg", "frame_ms", "messages", "errors"]
@@ -152,8 +156,6 @@ def test_status_has_exactly_its_keys_and_is_json(model):
 def test_faces_and_deformers_are_checked():
     with pytest.raises(UnknownNameError, match="did you mean amber"):
         Face("ambre")
-    with pytest.raises(InvalidValueError, match="no layered tissue"):
-        Face(deformer="tissue")
     with pytest.raises(UnknownNameError, match="geometric"):
         Face(deformer="jelly")
     assert Face("onyx").status()["face"] == "onyx"
@@ -225,3 +227,44 @@ def test_a_picture_from_the_command_line_needs_no_compiler(tmp_path):
     )
     said = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout
     assert said.strip() == "False"
+
+
+@pytest.mark.gl
+def test_a_geometry_holds_until_the_face_s_next_step_whatever_else_is_asked(face):
+    face.set_emotion("happiness", 1.0, fade=0.0)
+    held = face.step(0.1)
+    kept = held.copy()
+    face.render((64, 48), pose=FacePose())
+    face.warm_up()
+    face.set_emotion("anger", 1.0, fade=0.0)
+    assert face.geometry != kept
+    Face(face.model).step(0.1)
+    assert held == kept
+    face.step(0.1)
+    assert held != kept
+
+
+def test_a_face_says_that_it_cannot_be_copied_or_pickled(face):
+    for call in (pickle.dumps, copy.copy, copy.deepcopy):
+        with pytest.raises(TypeError, match="make another Face of the same model"):
+            call(face)
+
+
+@pytest.mark.gl
+def test_a_closed_face_draws_no_more():
+    with Face("amber", compiled=False) as face:
+        face.render((64, 48))
+    face.close()
+    with pytest.raises(InvalidValueError, match="closed"):
+        face.render((64, 48))
+
+
+def test_faces_read_their_model_once_while_its_files_stay(tmp_path):
+    folder = tmp_path / "mine"
+    shutil.copytree(load_model("amber").folder, folder)
+    first = load_model(folder)
+    assert Face(folder).model is first
+    assert load_model(folder, asymmetry=0.0) is not first
+    with (folder / "jaw.yaml").open("a") as file:
+        file.write("# changed\n")
+    assert load_model(folder) is not first

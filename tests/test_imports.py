@@ -16,7 +16,7 @@ PACKAGE = Path(agentface.__file__).parent
 LAYERS = (
     ("errors",),
     ("conventions", "resources", "config"),
-    ("parameters", "clock"),
+    ("parameters", "clock", "kernel"),
     ("mesh",),
     ("head",),
     ("emotion", "motion", "deform", "tissue", "mpeg4"),

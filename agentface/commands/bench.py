@@ -19,8 +19,8 @@ def bench(*, name: str | None, json_file: str | None, face: str, deformer: str) 
 
     Of all of them, those that draw are left out, and said to be, on a machine without OpenGL.
     """
+    from agentface.deform.protocol import check_deformer
     from agentface.errors import UnknownNameError
-    from agentface.face import check_deformer
     from agentface.resources import face_folder
     from agentface.studies.bench import BENCHES
 

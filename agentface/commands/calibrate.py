@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from agentface.commands.options import json_option, write_json
+from agentface.commands.options import deformer_option, json_option, write_json
 from agentface.errors import OutputError
 
 if TYPE_CHECKING:
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 @click.option("-o", "--output", metavar="FILE.md|-", help="With --table: the document whose table to renew.")
 @json_option
 @click.option("--face", metavar="NAME|PATH", help="The same as FACE.")
-@click.option("--deformer", type=click.Choice(["geometric", "tissue"]), default="geometric", show_default=True)
+@deformer_option
 def calibrate(
     *,
     named: str | None,
@@ -46,7 +46,7 @@ def calibrate(
 
     Takes minutes. Prints how well every action unit agrees, before and after.
     """
-    from agentface.face import check_deformer
+    from agentface.deform.protocol import check_deformer
 
     check_deformer(deformer)
     if named and face:

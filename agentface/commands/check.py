@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import click
 
+from agentface.commands.options import deformer_option
 from agentface.errors import DataError, Fault, InvalidValueError
 
 if TYPE_CHECKING:
@@ -19,13 +20,13 @@ _Reader = Callable[[Path], object]
 @click.command()
 @click.argument("files", nargs=-1, type=click.Path(path_type=Path), metavar="[FILE|FOLDER]...")
 @click.option("--face", metavar="NAME|PATH", help="A face to check.")
-@click.option("--deformer", type=click.Choice(["geometric", "tissue"]), default="geometric", show_default=True)
+@deformer_option
 def check(*, files: tuple[Path, ...], face: str | None, deformer: str) -> None:
     """Check rules, faces and EmotionML: files, folders, or, if none is named, all that come with agentface.
 
     Prints every fault with file and line; the exit code is 1 if there is any.
     """
-    from agentface.face import check_deformer
+    from agentface.deform.protocol import check_deformer
     from agentface.resources import face_folder
 
     check_deformer(deformer)

@@ -23,8 +23,8 @@ from agentface.commands.options import face_options
 @face_options
 def figures(*, names: tuple[str, ...], output: Path, face: str, deformer: str) -> None:
     """Draw the figures of the papers with this face, and the other pictures of the documents: all, or some by NAME."""
+    from agentface.deform.protocol import check_deformer
     from agentface.errors import UnknownNameError
-    from agentface.face import check_deformer
     from agentface.io.files import check_writable, write_file
     from agentface.studies.figures import FIGURES, draw
 

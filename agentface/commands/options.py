@@ -101,15 +101,17 @@ json_option = click.option(
 )
 
 
+deformer_option = click.option(
+    "--deformer", default="geometric", metavar="NAME", show_default=True, help="What makes a face of a pose."
+)
+
+
 def face_options(command: _Command) -> _Command:
     """Add ``--face`` and ``--deformer``."""
     face = click.option(
         "--face", default=DEFAULT_FACE, metavar="NAME|PATH", show_default=True, help="A face's name, or its folder."
     )
-    deformer = click.option(
-        "--deformer", type=click.Choice(["geometric", "tissue"]), default="geometric", show_default=True
-    )
-    return face(deformer(command))
+    return face(deformer_option(command))
 
 
 def make_face(face: str, deformer: str, *, compiled: bool = True, look: str | None = None) -> Face:

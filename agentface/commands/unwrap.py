@@ -22,7 +22,7 @@ def unwrap(*, look: str | None, size: int, lines: bool, output: Path, face: str,
 
     Paint it, and name it in a look's file for every other command to wear it: skin: {..., texture: FILE.png}
     """
-    from agentface.face import check_deformer
+    from agentface.deform.protocol import check_deformer
     from agentface.head.look import load_look
     from agentface.head.model import load_model
     from agentface.io.files import check_writable

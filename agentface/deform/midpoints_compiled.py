@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 
 from agentface.conventions import Floats
 from agentface.deform.midpoints import BetweenTables
+from agentface.kernel import kernel
 
 _HALF = np.float32(0.5)
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@kernel(error_model="numpy")
 def apply(tables: BetweenTables, points: Floats) -> None:
     """Put each vertex of ``points (P, 3)`` m in the middle of its two."""
     for row in range(tables.rows.shape[0]):

@@ -1,113 +1,110 @@
-"""From a pose to a face: the deformers, one behind the other, and the protocol that every deformer keeps."""
+"""The muscle-based face of Bui, Heylen and Nijholt, from a pose to a geometry."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from functools import partial
-from importlib import import_module
-from typing import Any, Protocol
 
 from agentface.conventions import Floats
-from agentface.deform import tables as frame
-from agentface.deform.geometry import FaceGeometry
+from agentface.deform import order, tables
+from agentface.deform.finish import order as last_part
+from agentface.deform.finish.order import FinishStage
+from agentface.deform.geometry import FaceArrays, FaceGeometry
 from agentface.deform.muscles.combine import Combiner, Method
+from agentface.deform.order import Stage
+from agentface.deform.protocol import Frames
 from agentface.deform.ranges import check_pose
 from agentface.head.model import HeadModel
-from agentface.mesh.normal_field import NormalField
 from agentface.parameters import VECTOR_MUSCLES, FacePose, indices_of
 
-_PARTS = {
-    "limits": "muscles.limits",
-    "lips": "mouth.lips",
-    "eyelids": "eyes.eyelids",
-    "volumes": "muscles.volumes",
-    "jaw": "mouth.jaw",
-    "contact": "mouth.contact",
-    "squash": "muscles.squash",
-    "between": "midpoints",
-    "wrinkles": "finish.wrinkles",
-    "shading": "finish.wrinkle_normals",
-    "eyes": "eyes.eyeballs",
-    "head": "finish.head_turn",
-}
-
-
-class Deformer(Protocol):
-    """Makes a face of a pose."""
-
-    def deform(self, pose: FacePose) -> FaceGeometry:
-        """The face in ``pose``; the result's arrays are overwritten by the next call."""
+_FIRST_MUSCLE = indices_of(VECTOR_MUSCLES[0])[0]
+_MUSCLES = slice(_FIRST_MUSCLE, _FIRST_MUSCLE + len(VECTOR_MUSCLES))
 
 
 class GeometricDeformer:
-    """The muscle-based face of Bui, Heylen and Nijholt.
+    """The geometric face: a pose has one shape, whatever came before.
 
     The vector muscles move the skin and the control points of the lips, combined as ``combine`` says, and gather
     volumes, as far as each region allows; then orbicularis oris, the lids, and the jaw, which carries all that along;
-    then the lips' surface takes its vertices, lips and teeth are kept apart, no skin turns over, and the wrinkles
-    rise. ``compiled=False`` takes the numpy forms, the same to 1e-6 m: ready at once, slow a frame.
+    then the lips' surface takes its vertices, lips and teeth are kept apart, no skin turns over
+    (:mod:`agentface.deform.order`), and the skin gets its wrinkles, normals and neck
+    (:mod:`agentface.deform.finish.order`). ``compiled=False`` takes the numpy forms, the same to 1e-6 m: ready at once,
+    slow a frame.
+
+    Attributes:
+        frames: writes rows of poses into rows of faces, one call at a time.
     """
 
     def __init__(self, model: HeadModel, combine: Method = "parallel", *, compiled: bool = True) -> None:
-        tables, muscles = frame.prepare(model)
-        count = len(model.vertices)
-        self._points = tables.rest.copy()
-        self.geometry = FaceGeometry.at_rest(model.vertices, model.vertices, len(model.trains))
-        self.geometry.vertices = self._points[:count]
-        self._combiner = Combiner(tables.rest, muscles, combine, compiled=compiled)
-        self._normals = NormalField(model.triangles, count, compiled=compiled)
-        first = indices_of(VECTOR_MUSCLES[0])[0]
-        self._muscles = slice(first, first + len(VECTOR_MUSCLES))
-        self._stages = self._in_order(tables, "_compiled" if compiled else "")
+        self._model, self._method, self._compiled = model, combine, compiled
+        self._tables = tables.of(model)
+        skin = self._tables.skin
+        self._points = skin.rest.copy()
+        self._combiner = Combiner(skin.rest, tables.muscles_of(model, skin.lips), combine, compiled=compiled)
+        self._deform, self._finish = order.deform, last_part.finish
+        self.frames: Frames = self._by_parts
+        if compiled:
+            from agentface.deform import order_compiled
 
-    def deform(self, pose: FacePose) -> FaceGeometry:
-        """The face in ``pose``; the result's arrays are overwritten by the next call.
+            self._deform, self._finish = order_compiled.deform, order_compiled.finish
+            if combine == "parallel":
+                self.frames = partial(order_compiled.frames, self._tables, order_compiled.new_scratch(self._tables))
+        self._rows = self._new_rows()
+        self._arrays, self._shown = self._rows.arrays(), self._rows[0]
+
+    def reset(self, pose: FacePose) -> None:
+        """Nothing: this face has no memory."""
+
+    def step(self, pose: FacePose, dt: float) -> FaceGeometry:
+        """The face in ``pose``, in arrays that the next step overwrites.
 
         Raises InvalidValueError for a parameter outside its range.
         """
-        values = pose.values
-        check_pose(values)
-        for stage in self._stages.values():
-            stage(values)
-        return self.geometry
+        check_pose(pose.values)
+        self.frames(0, 1, pose.values[None], self._arrays)
+        return self._shown
 
-    def stages(self) -> dict[str, Callable[[FacePose], None]]:
+    def at(self, pose: FacePose) -> FaceGeometry:
+        """The face in ``pose``, in arrays of its own; raises InvalidValueError for a parameter outside its range."""
+        check_pose(pose.values)
+        rows = self._new_rows()
+        self.frames(0, 1, pose.values[None], rows.arrays())
+        return rows[0]
+
+    def worker(self) -> Frames:
+        """Writes rows of poses into rows of faces; each worker may be at work at the same time as the others."""
+        return GeometricDeformer(self._model, self._method, compiled=self._compiled).frames
+
+    def stages(self, geometry: FaceGeometry) -> dict[str, Callable[[FacePose], None]]:
         """What a frame consists of, in its order, by name: each goes on from what the ones before it left."""
-        return {name: partial(_act, stage) for name, stage in self._stages.items()}
+        face = geometry.arrays()
+        acts: dict[str, Callable[[FacePose], None]] = {"muscles": lambda pose: self._contract(pose.values)}
+        for stage in Stage:
+            acts[stage.name.lower()] = partial(self._skin_stages, stage, stage)
+        acts["copy"] = lambda _: self._copy(face)
+        for last in FinishStage:
+            acts[last.name.lower()] = partial(self._last_stages, face, last, last)
+        return acts
 
-    def _in_order(self, tables: frame.PartTables, ending: str) -> dict[str, Callable[[Floats], None]]:
-        part: dict[str, Any] = {
-            name: import_module(f"agentface.deform.{module}{ending}") for name, module in _PARTS.items()
-        }
-        shown, points = self.geometry, self._points
-        raised = part["wrinkles"]
+    def _by_parts(self, first: int, last: int, poses: Floats, rows: FaceArrays) -> None:
+        for index in range(first, last):
+            values, face = poses[index], FaceArrays(*(array[index] for array in rows))
+            self._contract(values)
+            self._deform(Stage.VOLUMES, Stage.MIDPOINTS, self._tables.skin, values, self._points)
+            self._copy(face)
+            self._finish(FinishStage.SMOOTH_NORMALS, FinishStage.NECK, self._tables.finish, values, face)
 
-        def raise_wrinkles(values: Floats) -> None:
-            raised.levels(tables.wrinkles, values, shown.wrinkle_levels)
-            raised.heights(tables.wrinkles, values, shown.wrinkles)
-            raised.raise_vertices(tables.wrinkles, shown.wrinkles, shown.smooth_normals, shown.vertices)
+    def _contract(self, values: Floats) -> None:
+        self._combiner.apply(values[_MUSCLES], self._points)
 
-        return {
-            "muscles": lambda values: self._combiner.apply(values[self._muscles], points),
-            "volumes": lambda values: part["volumes"].apply(tables.volumes, values, points),
-            "limits": lambda _: part["limits"].apply(tables.limits, points),
-            "orbicularis_oris": lambda values: part["lips"].contract(tables.lips, values, points),
-            "eyelids": lambda values: part["eyelids"].apply(tables.eyelids, values, points),
-            "jaw": lambda values: part["jaw"].apply(tables.jaw, values, points),
-            "lips": lambda _: part["lips"].surface(tables.lips, points),
-            "contact": lambda values: part["contact"].apply(tables.contact, values, points),
-            "creases": lambda _: part["squash"].apply(tables.creases, points),
-            "between": lambda _: part["between"].apply(tables.between, points),
-            "smooth_normals": lambda _: self._normals.compute(shown.vertices, shown.smooth_normals),
-            "wrinkles": raise_wrinkles,
-            "normals": lambda _: part["shading"].apply(
-                tables.shading, shown.wrinkles, shown.vertices, shown.smooth_normals, shown.normals
-            ),
-            "eyes": lambda values: part["eyes"].apply(tables.eyes, values, shown.eye_rotations),
-            "teeth": lambda values: part["jaw"].transform(tables.jaw, values, shown.jaw),
-            "head": lambda values: part["head"].apply(tables.head, values, shown.head),
-        }
+    def _skin_stages(self, first: int, last: int, pose: FacePose) -> None:
+        self._deform(first, last, self._tables.skin, pose.values, self._points)
 
+    def _copy(self, face: FaceArrays) -> None:
+        face.vertices[:] = self._points[: len(face.vertices)]
 
-def _act(stage: Callable[[Floats], None], pose: FacePose) -> None:
-    stage(pose.values)
+    def _last_stages(self, face: FaceArrays, first: int, last: int, pose: FacePose) -> None:
+        self._finish(first, last, self._tables.finish, pose.values, face)
+
+    def _new_rows(self) -> FaceGeometry:
+        return FaceGeometry.at_rest(self._model.vertices, self._model.normals, len(self._model.trains), batch=(1,))

@@ -1,7 +1,7 @@
-"""Vectors of single precision numbers for compiled kernels: arithmetic on :data:`WIDTH` lanes, held in registers.
+"""Vectors of single precision numbers for compiled kernels: arithmetic on LANES lanes, held in registers.
 
 numba turns a loop into vector instructions only where it can prove much, and keeps sums in memory between two loops.
-A value made by :func:`load`, :func:`tile` or :func:`splat` is WIDTH numbers that ``+ - *`` take lane by lane. It is
+A value made by :func:`load`, :func:`tile` or :func:`splat` is LANES numbers that ``+ - *`` take lane by lane. It is
 made of parts of eight, which is a register of AVX; LLVM splits them where registers are narrower. An index counts
 the elements of an array in C order, whatever its shape, and is not checked.
 """
@@ -19,14 +19,10 @@ from numba import extending, types
 from numba.core import cgutils
 from numba.core.datamodel import PrimitiveModel, register_default
 
-PART = 8
-"""Lanes of a register."""
-_PARTS = 2
-WIDTH = PART * _PARTS
-"""Lanes of a vector: two registers, because the chain of operations of one alone leaves the processor idle."""
+from agentface.deform.lanes import LANES, PART, PARTS
 
 _LANES = ir.VectorType(ir.FloatType(), PART)
-_VECTOR = ir.ArrayType(_LANES, _PARTS)
+_VECTOR = ir.ArrayType(_LANES, PARTS)
 _I32 = ir.IntType(32)
 # numba's annotations keep the compiler's own arguments in a function's signature.
 _intrinsic: Any = extending.intrinsic
@@ -36,7 +32,7 @@ class Vector(types.Type):
     """The type of a vector, inside a kernel only."""
 
     def __init__(self) -> None:
-        super().__init__(name=f"float32x{WIDTH}")
+        super().__init__(name=f"float32x{LANES}")
 
 
 @register_default(Vector)
@@ -51,7 +47,7 @@ _TYPE: Any = Vector()
 def _each(builder: Any, make: Callable[..., Any], *vectors: Any) -> Any:
     """A vector whose parts ``make`` makes of the parts of others."""
     result = ir.Constant(_VECTOR, ir.Undefined)
-    for part in range(_PARTS):
+    for part in range(PARTS):
         result = builder.insert_value(result, make(*(builder.extract_value(v, part) for v in vectors)), part)
     return result
 
@@ -85,7 +81,7 @@ def load(typing: Any, array: Any, index: Any) -> Any:
 
     def generate(context: Any, builder: Any, signature: Any, args: Any) -> Any:
         start = _address(context, builder, signature, args)
-        parts = iter([builder.load(_address_of(part, builder, start), align=4) for part in range(_PARTS)])
+        parts = iter([builder.load(_address_of(part, builder, start), align=4) for part in range(PARTS)])
         return _each(builder, lambda: next(parts))
 
     return _TYPE(array, index), generate
@@ -97,7 +93,7 @@ def store(typing: Any, array: Any, index: Any, vector: Any) -> Any:
 
     def generate(context: Any, builder: Any, signature: Any, args: Any) -> Any:
         start = _address(context, builder, signature, args)
-        for part in range(_PARTS):
+        for part in range(PARTS):
             builder.store(builder.extract_value(args[2], part), _address_of(part, builder, start), align=4)
         return context.get_dummy_value()
 
@@ -143,7 +139,7 @@ def largest(typing: Any, vector: Any) -> Any:
 
     def generate(context: Any, builder: Any, signature: Any, args: Any) -> Any:
         result = builder.extract_value(args[0], 0)
-        for part in range(1, _PARTS):
+        for part in range(1, PARTS):
             result = _select(builder, ">", result, builder.extract_value(args[0], part))
         return _call(builder, "llvm.vector.reduce.fmax.v8f32", ir.FloatType(), result)
 

@@ -1,4 +1,4 @@
-"""What a frame of one face needs besides its vector muscles, made once: the tables of every part."""
+"""What a frame of the geometric face needs, made once a model."""
 
 from __future__ import annotations
 
@@ -7,25 +7,19 @@ from typing import NamedTuple
 
 import numpy as np
 
-from agentface.conventions import Floats, Indices
-from agentface.deform import creases
-from agentface.deform import midpoints as between
-from agentface.deform.eyes import eyeballs as eyes
+from agentface.conventions import Floats
+from agentface.deform import creases, midpoints
 from agentface.deform.eyes import eyelids
-from agentface.deform.eyes.eyeballs import EyesTables
 from agentface.deform.eyes.eyelids import EyelidsTables
-from agentface.deform.finish import head_turn as head
-from agentface.deform.finish import wrinkle_normals as shading
-from agentface.deform.finish import wrinkles
-from agentface.deform.finish.head_turn import HeadTables
-from agentface.deform.finish.wrinkle_normals import ShadingTables
-from agentface.deform.finish.wrinkles import WrinkleTables
+from agentface.deform.finish import order as finish
+from agentface.deform.finish.order import FinishTables
 from agentface.deform.midpoints import BetweenTables
 from agentface.deform.mouth import contact, jaw, lips
 from agentface.deform.mouth.contact import ContactTables
 from agentface.deform.mouth.jaw import JawTables
 from agentface.deform.mouth.lips import LipTables
 from agentface.deform.muscles import limits, volumes
+from agentface.deform.muscles.blocks import Blocks, pack
 from agentface.deform.muscles.limits import LimitTables
 from agentface.deform.muscles.squash import SquashTables
 from agentface.deform.muscles.volumes import VolumeTables
@@ -33,18 +27,13 @@ from agentface.head.model import HeadModel
 from agentface.head.muscle_set import MuscleSet
 
 
-class PartTables(NamedTuple):
+class SkinTables(NamedTuple):
     """The tables of a face with V vertices and C control points of the lips, P = V + C.
 
-    Attributes:
-        rest: ``(P, 3)`` float32 m, the skin's vertices, then the control points.
-        triangles: ``(T, 3)`` int32, of the skin.
-        limits, lips, eyelids, volumes, jaw, contact, creases, between, wrinkles, shading, eyes, head: the parts
-            of the same names.
+    ``rest`` is ``(P, 3)`` float32 m, the skin's vertices, then the control points; the others are those of the stages.
     """
 
     rest: Floats
-    triangles: Indices
     limits: LimitTables
     lips: LipTables
     eyelids: EyelidsTables
@@ -52,28 +41,42 @@ class PartTables(NamedTuple):
     jaw: JawTables
     contact: ContactTables
     creases: SquashTables
-    between: BetweenTables
-    wrinkles: WrinkleTables
-    shading: ShadingTables
-    eyes: EyesTables
-    head: HeadTables
+    midpoints: BetweenTables
 
 
-def prepare(model: HeadModel) -> tuple[PartTables, MuscleSet]:
-    """The tables of a face, and its vector muscles, which also reach the control points.
+class FaceTables(NamedTuple):
+    """Everything that a frame needs, in the form that kernels take: the skin's, the last part's, the muscles'."""
 
-    A muscle reaches a control point as far as the skin over which it lies.
-    """
+    skin: SkinTables
+    finish: FinishTables
+    blocks: Blocks
+
+
+def of(model: HeadModel) -> FaceTables:
+    """The tables of a face, prepared once: deformers of the same model share them."""
+    tables: FaceTables = model.derived("deform.tables", prepare)
+    return tables
+
+
+def prepare(model: HeadModel) -> FaceTables:
+    """The tables of a face."""
+    skin = _skin(model)
+    return FaceTables(skin, finish.prepare(model), pack(skin.rest, muscles_of(model, skin.lips)))
+
+
+def muscles_of(model: HeadModel, of_lips: LipTables) -> MuscleSet:
+    """The face's vector muscles, which also reach the control points: as far as the skin over which each lies."""
+    reach = (model.muscles.reach[:, of_lips.control_vertices] * of_lips.control_weights).sum(axis=2)
+    return replace(model.muscles, reach=np.hstack([model.muscles.reach, np.clip(reach, 0.0, 1.0)]))
+
+
+def _skin(model: HeadModel) -> SkinTables:
     of_lips = lips.prepare(model)
     follow = of_lips.control_vertices, of_lips.control_weights
     rest = np.concatenate([model.vertices, of_lips.control_rest])
-    reach = (model.muscles.reach[:, follow[0]] * follow[1]).sum(axis=2)
-    muscles = replace(model.muscles, reach=np.hstack([model.muscles.reach, np.clip(reach, 0.0, 1.0)]))
     of_eyelids = eyelids.prepare(model)
-    of_wrinkles = wrinkles.prepare(model)
-    tables = PartTables(
+    return SkinTables(
         rest=rest,
-        triangles=np.ascontiguousarray(model.triangles, np.int32),
         limits=limits.prepare(model, follow, rest),
         lips=of_lips,
         eyelids=of_eyelids,
@@ -81,10 +84,5 @@ def prepare(model: HeadModel) -> tuple[PartTables, MuscleSet]:
         jaw=jaw.prepare(model, follow, (of_lips.patch, of_lips.controls, of_lips.weight, of_lips.control_rest)),
         contact=contact.prepare(model),
         creases=creases.prepare(model, of_eyelids, of_lips),
-        between=between.prepare(model),
-        wrinkles=of_wrinkles,
-        shading=shading.prepare(model, of_wrinkles),
-        eyes=eyes.prepare(model),
-        head=head.prepare(model),
+        midpoints=midpoints.prepare(model),
     )
-    return tables, muscles

@@ -13,6 +13,7 @@ from agentface.emotion.rules import RuleBase
 from agentface.emotion.selector import MODES
 from agentface.emotion.sets import INTENSITY_SETS, SETS
 from agentface.emotion.state import EMOTIONS, EmotionState
+from agentface.kernel import can_compile
 from agentface.parameters import COUNT, MUSCLES, FacePose, indices_of
 
 State = EmotionState | Mapping[str, float]
@@ -29,7 +30,7 @@ class Inference:
         self.rulebase = rulebase
         self._places = np.array([(index, row) for row, muscle in enumerate(MUSCLES) for index in indices_of(muscle)])
         self._infer: Callable[..., None] | None = None
-        if not compiled:
+        if not (compiled and can_compile()):
             return
         from agentface.emotion.inference_compiled import infer
 

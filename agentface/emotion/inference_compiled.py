@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 import numpy.typing as npt
-from numba import njit
 
 from agentface.conventions import Doubles, Indices
 from agentface.emotion.sets import Sets
+from agentface.kernel import kernel
 
 
-@njit(cache=True)
+@kernel()
 def infer(
     intensities: Doubles,
     gap: float,
@@ -49,7 +49,7 @@ def infer(
         out[muscle] = min(1.0, out[muscle])
 
 
-@njit(cache=True)
+@kernel()
 def _weigh(intensities: Doubles, gap: float, weights: Doubles) -> None:
     top = intensities.max()
     if top <= 0.0:
@@ -75,7 +75,7 @@ def _weigh(intensities: Doubles, gap: float, weights: Doubles) -> None:
                 weights[low, high] += share / (size * (size - 1) / 2)
 
 
-@njit(cache=True)
+@kernel()
 def _strengths(first: float, second: float, alone: bool, sets: Sets) -> Doubles:
     count = len(sets.intensity_centres)
     strengths = np.zeros((count, count))
@@ -90,7 +90,7 @@ def _strengths(first: float, second: float, alone: bool, sets: Sets) -> Doubles:
     return strengths
 
 
-@njit(cache=True)
+@kernel()
 def _contract(strengths: Doubles, rules: npt.NDArray[np.int8], sets: Sets) -> float:
     cuts = np.zeros(len(sets.contraction_centres))
     for i in range(strengths.shape[0]):
@@ -101,7 +101,7 @@ def _contract(strengths: Doubles, rules: npt.NDArray[np.int8], sets: Sets) -> fl
     return float(min(1.0, max(0.0, (_centroid(cuts, sets) - low) / (high - low))))
 
 
-@njit(cache=True)
+@kernel()
 def _centroid(cuts: Doubles, sets: Sets) -> float:
     centres, half_width, universe = sets.contraction_centres, sets.contraction_half_width, sets.universe
     extra = np.empty(2 * len(centres))

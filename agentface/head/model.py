@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, lru_cache
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any, TypeVar
 
 import numpy as np
 from pydantic import AfterValidator, Field
@@ -27,6 +28,9 @@ from agentface.mesh.normals import vertex_normals
 from agentface.resources import DEFAULT_FACE, face_folder
 
 _Point = Annotated[list[Annotated[float, Field(ge=-0.3, le=0.3)]], Field(min_length=3, max_length=3)]
+_T = TypeVar("_T")
+_KEPT = 8
+"""Faces that are kept once they are read."""
 PARTS = ("teeth_upper", "teeth_lower", "tongue", "eye_l", "eye_r")
 
 
@@ -125,7 +129,7 @@ class HeadModel:
     @cached_property
     def normals(self) -> Floats:
         """``(V, 3)`` float32, the skin's unit normals at rest."""
-        return vertex_normals(self.vertices, self.triangles)
+        return vertex_normals(self.vertices, self.triangles).astype(np.float32)
 
     @cached_property
     def volumes(self) -> tuple[PlacedVolume, ...]:
@@ -157,6 +161,14 @@ class HeadModel:
             return np.ones(len(self.vertices), np.float32)
         return unwrap_cover(self.vertices, unwrap_centre(self.landmarks))
 
+    def derived(self, name: str, make: Callable[[HeadModel], _T]) -> _T:
+        """What ``make`` makes of this model, made once and kept with it under ``name``."""
+        kept: dict[str, Any] = self.__dict__.setdefault("_derived", {})
+        if name not in kept:
+            kept[name] = make(self)
+        made: _T = kept[name]
+        return made
+
     def eye_centre(self, side: str) -> Floats:
         """The centre ``(3,)`` m of the eyeball of side ``l`` or ``r``."""
         return _eye_centre(self.eyes, side) + self.part_moves[f"eye_{side}"]
@@ -167,6 +179,7 @@ def load_model(
 ) -> HeadModel:
     """Read a face by name or from a folder; with ``muscles``, take these instead of its ``muscles.yaml``.
 
+    The faces read last are kept while their files do not change: write to none of a model's arrays.
     ``asymmetry`` 0..1 is how much of its own asymmetry it has; without any it is its own mirror image.
 
     Raises UnknownNameError for an unknown face, InvalidValueError for an asymmetry out of range, and DataError with the
@@ -174,6 +187,19 @@ def load_model(
     """
     check_fraction("asymmetry", asymmetry)
     folder = face_folder(face)
+    if muscles is not None:
+        return _read(folder, muscles, asymmetry)
+    files = sorted(path for path in folder.iterdir() if path.is_file())
+    stamps = tuple((path.name, path.stat().st_mtime_ns, path.stat().st_size) for path in files)
+    return _kept(folder.resolve(), stamps, asymmetry)
+
+
+@lru_cache(maxsize=_KEPT)
+def _kept(folder: Path, stamps: tuple[tuple[str, int, int], ...], asymmetry: float) -> HeadModel:
+    return _read(folder, None, asymmetry)
+
+
+def _read(folder: Path, muscles: MusclesFile | None, asymmetry: float) -> HeadModel:
     meshes = read_glb(folder / "head.glb")
     skin = _checked_skin(folder / "head.glb", meshes)
     vertices = np.ascontiguousarray(skin.attributes["POSITION"], np.float32)

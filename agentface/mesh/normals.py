@@ -1,17 +1,57 @@
-"""The normals of a mesh's vertices."""
+"""Vertex normals: the mean of the normals of the triangles around a vertex, weighted by their areas."""
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
+import numpy.typing as npt
 
 from agentface.conventions import Doubles, Floats, Indices
 
 
-def vertex_normals(vertices: Floats | Doubles, triangles: Indices) -> Floats:
-    """``(V, 3)`` unit normals: the mean of the triangles' normals, weighted by area."""
-    a, b, c = (vertices[triangles[:, corner]] for corner in range(3))
-    faces = np.cross(b - a, c - a)
-    corners, weights = triangles.T.ravel(), np.tile(faces, (3, 1))
-    sums = np.stack([np.bincount(corners, weights[:, axis], len(vertices)) for axis in range(3)], axis=1)
-    length = np.linalg.norm(sums, axis=1, keepdims=True)
-    return np.asarray(sums / np.maximum(length, 1e-12), np.float32)
+def vertex_normals(vertices: npt.NDArray[np.floating[Any]], triangles: npt.NDArray[np.integer[Any]]) -> Doubles:
+    """float64 unit ``(V, 3)``, outward.
+
+    Args:
+        vertices: ``(V, 3)``.
+        triangles: ``(T, 3)`` vertex indices, counter-clockwise seen from outside.
+
+    Returns:
+        Outward unit normals; zero where a vertex has no triangle or its triangles have no area.
+    """
+    corners = np.asarray(vertices, dtype=np.float64)[triangles]
+    across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    ends = triangles.ravel()
+    total = np.stack([np.bincount(ends, across[:, axis].repeat(3), len(vertices)) for axis in range(3)], axis=1)
+    length = np.linalg.norm(total, axis=1, keepdims=True)
+    normals: Doubles = np.divide(total, length, out=np.zeros_like(total), where=length > 0.0)
+    return normals
+
+
+def write_normals(vertices: Floats, triangles: Indices, out: Floats) -> None:
+    """Write :func:`vertex_normals` into ``out``, float32 ``(V, 3)``."""
+    out[:] = vertex_normals(vertices, triangles)
+
+
+def corner_normals(
+    vertices: npt.NDArray[np.floating[Any]],
+    triangles: npt.NDArray[np.integer[Any]],
+    on_inner_foot: npt.NDArray[np.bool_],
+) -> Doubles:
+    """float64 unit ``(T, 3, 3)``: the normals that shade each corner of each triangle (Bui et al., section 4).
+
+    The mean normal of a vertex at the bottom between two wrinkles points straight out of the skin and hides the
+    valley; there, each triangle uses its own normal.
+
+    Args:
+        vertices: ``(V, 3)``, raised.
+        triangles: ``(T, 3)`` vertex indices.
+        on_inner_foot: ``(V,)``, see :func:`agentface.head.trains.inner_feet`.
+    """
+    corners = np.asarray(vertices, dtype=np.float64)[triangles]
+    across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    length = np.linalg.norm(across, axis=1, keepdims=True)
+    flat = np.divide(across, length, out=np.zeros_like(across), where=length > 0.0)
+    shading: Doubles = vertex_normals(vertices, triangles)[triangles]
+    return np.where(on_inner_foot[triangles][:, :, None], flat[:, None, :], shading)

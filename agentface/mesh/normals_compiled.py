@@ -1,21 +1,21 @@
-"""Vertex normals, single precision; the numpy twin is in :mod:`agentface.mesh.normal_field`."""
+"""Vertex normals, single precision; the numpy twins are in :mod:`.normals`."""
 
 from __future__ import annotations
 
 import math
 
 import numpy as np
-from numba import njit
 
 from agentface.conventions import Floats, Indices
+from agentface.kernel import kernel
 
 _ZERO, _ONE = np.float32(0.0), np.float32(1.0)
 _SMALLEST = np.float32(1e-36)  # m^4, near the end of single precision
 
 
-@njit(cache=True, fastmath=True, error_model="numpy")
-def vertex_normals(vertices: Floats, triangles: Indices, out: Floats) -> None:
-    """Area-weighted unit normals of ``vertices (V, 3)``; a vertex without area gets zero."""
+@kernel(fastmath=True, error_model="numpy")
+def write_normals(vertices: Floats, triangles: Indices, out: Floats) -> None:
+    """Write the area-weighted unit normals of ``vertices (V, 3)`` into ``out (V, 3)``; without any area, zero."""
     for vertex in range(out.shape[0]):
         out[vertex, 0] = _ZERO
         out[vertex, 1] = _ZERO
@@ -25,7 +25,7 @@ def vertex_normals(vertices: Floats, triangles: Indices, out: Floats) -> None:
         make_unit(out, vertex)
 
 
-@njit(cache=True, fastmath=True, nogil=True, error_model="numpy")
+@kernel(fastmath=True, error_model="numpy")
 def add_areas(vertices: Floats, triangles: Indices, out: Floats) -> None:
     """Add to each corner's row of ``out (V, 3)`` its triangles' normals, as long as twice their areas, m^2."""
     for triangle in range(triangles.shape[0]):
@@ -40,7 +40,7 @@ def add_areas(vertices: Floats, triangles: Indices, out: Floats) -> None:
             out[corner, 2] += nz
 
 
-@njit(cache=True, fastmath=True, nogil=True, error_model="numpy")
+@kernel(fastmath=True, error_model="numpy")
 def make_unit(out: Floats, vertex: int) -> None:
     """Scale a row of ``out (V, 3)`` to length 1; one too short for that becomes zero."""
     square = out[vertex, 0] ** 2 + out[vertex, 1] ** 2 + out[vertex, 2] ** 2

@@ -23,10 +23,17 @@ _SHARES = np.array([[1, 1, 1], [4, 1, 1], [1, 4, 1], [1, 1, 4]]) / np.array([[3]
 """Of a triangle's corners in the four points that stand for it."""
 
 
+def ranges() -> list[np.ndarray]:
+    """The lowest and the highest value of every parameter, ``(COUNT,)``, but 0 for the head's angles."""
+    return [
+        np.array([0.0 if known.kind == "head" else getattr(known, end) for known in PARAMETERS])
+        for end in ("low", "high")
+    ]
+
+
 def random_poses(count: int, seed: int) -> Iterator[FacePose]:
-    """Poses with every parameter uniform in its range."""
-    low = np.array([known.low for known in PARAMETERS])
-    high = np.array([known.high for known in PARAMETERS])
+    """Poses with every parameter uniform in its range, but the head ahead: its turn twists the neck."""
+    low, high = ranges()
     draw = np.random.default_rng(seed)
     for _ in range(count):
         yield FacePose((low + (high - low) * draw.random(len(low))).astype(np.float32))

@@ -7,9 +7,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
+from agentface.deform.lanes import LANES
 from agentface.deform.muscles.blocks import pack, slacks
 from agentface.deform.muscles.combine import METHODS, REFERENCE, STEP, Combiner
-from agentface.deform.muscles.combine_compiled import LANES
 from agentface.deform.muscles.vector_muscle import pull
 from agentface.errors import InvalidValueError, UnknownNameError
 from agentface.head.muscle_set import FALLOFFS, MuscleSet

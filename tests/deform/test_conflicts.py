@@ -9,8 +9,8 @@ from agentface.deform.pipeline import GeometricDeformer
 from agentface.emotion.inference import default_inference
 from agentface.emotion.state import EMOTIONS, EmotionState
 from agentface.head.ring_names import LidRing
-from agentface.parameters import PARAMETERS, FacePose
-from tests.deform.conflicts import Edges, Poking, fold_vertices, random_poses
+from agentface.parameters import FacePose
+from tests.deform.conflicts import Edges, Poking, fold_vertices, random_poses, ranges
 from tests.heads import deformer_of, head_model
 
 COUNT, SEED = 2000, 2003
@@ -26,7 +26,7 @@ def test_random_poses(face):
     outside = ~edges.folding()
     flipped, through = {}, {}
     for number, pose in enumerate(random_poses(COUNT, SEED)):
-        geometry = deformer.deform(pose)
+        geometry = deformer.at(pose)
         for name in ("vertices", "normals", "wrinkles", "eye_rotations", "jaw", "head"):
             assert np.isfinite(getattr(geometry, name)).all(), (number, name)
         over = np.flatnonzero(edges.flipped(geometry.vertices) & outside)
@@ -52,7 +52,7 @@ def feelings():
 
 def sparse(count, seed):
     """Poses of few parameters, each at its highest with a probability of 0.15, the others at nothing."""
-    low, high = (np.array([getattr(known, end) for known in PARAMETERS]) for end in ("low", "high"))
+    low, high = ranges()
     draw = np.random.default_rng(seed)
     for number in range(count):
         yield number, FacePose(np.where(draw.random(len(low)) < 0.15, high, np.maximum(low, 0.0)).astype(np.float32))
@@ -93,7 +93,7 @@ def turned_over(face, poses):
     deformer, edges = deformer_of(face), Edges.of(model)
     outside, found = ~edges.folding(), {}
     for name, pose in poses:
-        over = edges.flipped(deformer.deform(pose).vertices) & outside
+        over = edges.flipped(deformer.at(pose).vertices) & outside
         if over.any():
             found[name] = model.vertices[edges.ends[over]].mean(axis=1)
     return found
@@ -112,7 +112,7 @@ def test_little_is_left_out_as_a_fold(face):
 def test_what_has_flipped_or_come_through_is_found(face):
     """The detectors themselves: a vertex pushed over its neighbours, a lid into the eye, a lip into the teeth."""
     model = head_model(face)
-    geometry, edges, poking = GeometricDeformer(model).deform(FacePose()), Edges.of(model), Poking(model)
+    geometry, edges, poking = GeometricDeformer(model).at(FacePose()), Edges.of(model), Poking(model)
     assert not edges.flipped(geometry.vertices).any()
     assert not any(poking.count(geometry).values())
     rest = geometry.vertices.copy()

@@ -73,7 +73,7 @@ def random_poses(count, seed):
 def test_lips_and_teeth_never_pass_through_each_other(face):
     mouth, deformer = Mouth(FACES[face]), deformer_of(face)
     for pose in random_poses(150, seed=5):
-        geometry = deformer.deform(pose)
+        geometry = deformer.at(pose)
         assert mouth.crossings(geometry.vertices, geometry.jaw) == (0, 0, 0), repr(pose)
 
 
@@ -91,7 +91,7 @@ def test_lips_and_teeth_never_pass_through_each_other(face):
     ],
 )
 def test_tight_lips_that_smile_do_not_pass_through_each_other(face, muscles):
-    geometry = deformer_of(face).deform(FacePose.of(**muscles))
+    geometry = deformer_of(face).at(FacePose.of(**muscles))
     assert Mouth(FACES[face]).crossings(geometry.vertices, geometry.jaw) == (0, 0, 0)
 
 
@@ -102,7 +102,7 @@ def test_lips_of_muscles_at_their_ends_hardly_ever_pass_through_each_other(face)
     for number in range(60):
         values = np.where(rng.random(COUNT) < (0.5 if number % 2 else 0.25), HIGH, np.maximum(LOW, 0.0))
         values[indices_of("jaw_open")[0]] *= number % 3 == 0
-        geometry = deformer.deform(FacePose(values.astype(np.float32)))
+        geometry = deformer.at(FacePose(values.astype(np.float32)))
         lips, *teeth = mouth.crossings(geometry.vertices, geometry.jaw)
         assert teeth == [0, 0], repr(values)
         through.append(lips)
@@ -113,7 +113,7 @@ def test_lips_of_muscles_at_their_ends_hardly_ever_pass_through_each_other(face)
 @pytest.mark.parametrize("press", [0.4, 0.7, 1.0])
 def test_pressed_lips_are_shut(face, press):
     """From corner to corner no more than a tenth of a millimetre stays open between the lowest and the highest ring."""
-    vertices = deformer_of(face).deform(FacePose.of(orbicularis_oris_press=press)).vertices
+    vertices = deformer_of(face).at(FacePose.of(orbicularis_oris_press=press)).vertices
     rings = FACES[face].lips.rings[:5]
     corner = FACES[face].landmarks["mouth_corner_l"][0]
     for x in np.linspace(-0.6, 0.6, 41) * corner:
@@ -168,7 +168,7 @@ def test_the_teeth_hold_lips_that_are_pushed_in(face):
     tables, mouth = TABLES[face], Mouth(FACES[face])
     for opening in (0.0, 0.3, 1.0):
         pose = FacePose.of(jaw_open=opening)
-        geometry = deformer_of(face, compiled=False).deform(pose)
+        geometry = deformer_of(face, compiled=False).at(pose)
         points = geometry.vertices.copy()
         points[tables.grid[3:12], 2] -= 6 * MM
         contact.apply(tables, pose.values, points)

@@ -46,7 +46,7 @@ def test_each_face_is_what_the_deformer_makes_of_its_pose(face):
     deformer = deformer_of(face)
     assert len(geometry) == len(poses)
     for index, pose in enumerate(poses):
-        assert_same(geometry.face(index), deformer.deform(FacePose(pose)))
+        assert_same(geometry[index], deformer.at(FacePose(pose)))
 
 
 def test_one_and_two_threads_make_the_same_faces(pair):
@@ -82,7 +82,7 @@ def test_a_coarser_face_makes_a_crowd_too():
     poses = random_poses(2)
     geometry, deformer = Crowd(model).deform(poses), GeometricDeformer(model)
     for index, pose in enumerate(poses):
-        assert_same(geometry.face(index), deformer.deform(FacePose(pose)))
+        assert_same(geometry[index], deformer.at(FacePose(pose)))
 
 
 @pytest.mark.parametrize(
@@ -122,12 +122,12 @@ def test_every_parameter_has_its_range_and_the_whole_of_it(known):
     for limit, way in ((known.low, -math.inf), (known.high, math.inf)):
         rows[1, known.index] = limit
         crowd().deform(rows)
-        deformer_of("amber").deform(FacePose.of(**{known.name: limit}))
+        deformer_of("amber").at(FacePose.of(**{known.name: limit}))
         rows[1, known.index] = np.nextafter(np.float32(limit), np.float32(way))
         with pytest.raises(InvalidValueError, match=rf"^pose 1: {what} of {known.name}: expected a number in .*\.\."):
             crowd().deform(rows)
         with pytest.raises(InvalidValueError, match=rf"^{what} of {known.name}: expected a number in .*\.\."):
-            deformer_of("amber").deform(FacePose(rows[1]))
+            deformer_of("amber").at(FacePose(rows[1]))
 
 
 @settings(max_examples=200)

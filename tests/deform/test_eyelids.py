@@ -5,7 +5,6 @@ import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
-from agentface.deform import simd
 from agentface.deform.eyes import eyeballs as eyes
 from agentface.deform.eyes import eyelids
 from agentface.deform.eyes import eyelids_compiled as compiled
@@ -93,10 +92,6 @@ def test_closed_lids_stay_closed_whatever_moved_the_skin_before(fractions, seed)
     for face, model in FACES.items():
         points = moved(face, values, model.vertices + push)
         assert max(largest_gap(face, points, side) for side in "lr") < 0.0003
-
-
-def test_a_block_is_what_the_compiled_loop_moves_at_once():
-    assert eyelids.LANES == simd.WIDTH
 
 
 def test_lids_close_evenly(face):

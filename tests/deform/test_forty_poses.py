@@ -42,7 +42,7 @@ def poses() -> dict[str, FacePose]:
 def test_every_vertex_is_where_it_was(face, request):
     model = head_model(face)
     deformer = deformer_of(face)
-    moved = {name: deformer.deform(pose).vertices - model.vertices for name, pose in poses().items()}
+    moved = {name: deformer.at(pose).vertices - model.vertices for name, pose in poses().items()}
     assert len(moved) == 40
     sampled = np.stack([np.rint(field[::EVERY] / UNIT_M) for field in moved.values()]).astype(np.int16)
     sizes = np.stack([np.linalg.norm(field, axis=1) for field in moved.values()])

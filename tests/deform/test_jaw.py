@@ -9,6 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.spatial import ConvexHull
 
+from agentface.deform.finish import teeth, teeth_compiled
 from agentface.deform.mouth import jaw
 from agentface.deform.mouth import jaw_compiled as compiled
 from agentface.deform.pipeline import GeometricDeformer
@@ -42,7 +43,7 @@ def drawn(face, opening):
 
 def transform(face, opening):
     matrix = np.empty((4, 4), np.float32)
-    jaw.transform(TABLES[face], FacePose.of(jaw_open=opening).values, matrix)
+    teeth.apply(teeth.prepare(FACES[face]), FacePose.of(jaw_open=opening).values, matrix)
     return matrix
 
 
@@ -115,7 +116,7 @@ def test_the_mouth_opens_to_an_oval(face):
     ring = model.lips.rings[0]
     outline = [*ring.upper, *ring.lower[-2:0:-1]]
     for opening in OPENINGS[1:]:
-        points = deformer.deform(FacePose.of(jaw_open=opening)).vertices[outline, :2].astype(np.float64)
+        points = deformer.at(FacePose.of(jaw_open=opening)).vertices[outline, :2].astype(np.float64)
         x, y = points.T
         area = 0.5 * abs((x * np.roll(y, -1) - y * np.roll(x, -1)).sum())
         assert area > 0.96 * ConvexHull(points).volume
@@ -138,7 +139,7 @@ def test_no_skin_is_torn(face, opening):
 
 def test_the_jaw_agrees_with_the_artists(face):
     model = FACES[face]
-    moved = deformer_of(face).deform(FacePose.of(jaw_open=1.0)).vertices - model.vertices
+    moved = deformer_of(face).at(FacePose.of(jaw_open=1.0)).vertices - model.vertices
     row = agreement(model, moved, model.shapes["jawOpen"].dense(len(moved)))
     assert row.cosine > 0.95
     assert 0.95 < row.peak_ratio < 1.05
@@ -168,8 +169,8 @@ def test_compiled_and_plain_are_the_same(opening):
         compiled.apply(TABLES[face], values, fast)
         np.testing.assert_allclose(fast, plain, atol=1e-7, rtol=0)
         one, other = np.empty((4, 4), np.float32), np.empty((4, 4), np.float32)
-        jaw.transform(TABLES[face], values, one)
-        compiled.transform(TABLES[face], values, other)
+        teeth.apply(teeth.prepare(model), values, one)
+        teeth_compiled.apply(teeth.prepare(model), values, other)
         np.testing.assert_allclose(other, one, atol=1e-7, rtol=0)
 
 
@@ -178,12 +179,13 @@ def test_the_lips_on_the_screen_turn_by_the_papers_shares(face, monkeypatch):
     monkeypatch.setattr(jaw, "_TAUT", 0.0)
     model = replace(FACES[face])  # another one, whose tables are made anew
     deformer = GeometricDeformer(model, compiled=False)
-    stages = deformer.stages()
+    geometry = deformer.at(FacePose())
+    stages = deformer.stages(geometry)
     _, y, z = model.jaw.pivot
     for opening in OPENINGS:
-        for name in ("muscles", "jaw", "lips"):
+        for name in ("muscles", "jaw", "lips", "copy"):
             stages[name](FacePose.of(jaw_open=opening))
-        before, after = (p[:, 1] - y + 1j * (p[:, 2] - z) for p in (model.vertices, deformer.geometry.vertices))
+        before, after = (p[:, 1] - y + 1j * (p[:, 2] - z) for p in (model.vertices, geometry.vertices))
         share = np.angle(after / before) / (opening * math.radians(model.jaw.widest_deg))
         for ring in model.lips.rings[:LIP_RINGS]:
             np.testing.assert_allclose(share[[ring.upper[0], ring.upper[-1]]], 1 / 3, atol=0.01)

@@ -7,6 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from agentface.deform.finish import neck
 from agentface.parameters import COUNT, NAMES, PARAMETERS, FacePose, parameter
 from tests.heads import deformer_of, head_model
 
@@ -20,7 +21,7 @@ def face(request):
 
 
 def vertices(face, **contractions):
-    return deformer_of(face).deform(FacePose.of(**contractions)).vertices.copy()
+    return deformer_of(face).at(FacePose.of(**contractions)).vertices.copy()
 
 
 def spread(fractions):
@@ -40,7 +41,7 @@ def mirrored(pose):
 
 
 def test_the_neutral_pose_is_the_face_at_rest(face):
-    geometry = deformer_of(face).deform(FacePose())
+    geometry = deformer_of(face).at(FacePose())
     np.testing.assert_array_equal(geometry.vertices, FACES[face].vertices)
     np.testing.assert_array_equal(geometry.jaw, np.eye(4))
     np.testing.assert_array_equal(geometry.head, np.eye(4))
@@ -50,10 +51,11 @@ def test_the_neutral_pose_is_the_face_at_rest(face):
 @given(FRACTIONS)
 def test_no_pose_tears_the_face(fractions):
     for face, model in FACES.items():
-        geometry = deformer_of(face).deform(spread(fractions))
+        geometry = deformer_of(face).at(spread(fractions))
         assert np.isfinite(geometry.vertices).all()
         assert np.abs(np.linalg.norm(geometry.normals, axis=1) - 1).max() < 1e-3
-        assert np.linalg.norm(geometry.vertices - model.vertices, axis=1).max() < 0.08
+        above = neck.shares(model) == 1.0  # where the head's turn moves nothing in the head's own axes
+        assert np.linalg.norm(geometry.vertices - model.vertices, axis=1)[above].max() < 0.08
         for turn in geometry.eye_rotations:
             np.testing.assert_allclose(turn @ turn.T, np.eye(3), atol=1e-5)
 
@@ -63,8 +65,8 @@ def test_no_pose_tears_the_face(fractions):
 def test_a_mirrored_pose_is_the_mirrored_face(fractions):
     pose = spread(fractions)
     for face, model in FACES.items():
-        one = deformer_of(face).deform(pose).vertices.copy()
-        other = deformer_of(face).deform(mirrored(pose)).vertices
+        one = deformer_of(face).at(pose).vertices.copy()
+        other = deformer_of(face).at(mirrored(pose)).vertices
         np.testing.assert_allclose(one[model.mirror] * [-1, 1, 1], other, atol=1e-5)
 
 
@@ -113,7 +115,7 @@ def test_the_jaw_takes_chin_and_lower_lip_along_and_leaves_the_upper_lip(face, o
     assert moved[lower, 1] < -0.03 * opening
     assert abs(moved[upper, 1]) < 0.006 * opening
     assert moved[lower, 1] < moved[corner, 1] < moved[upper, 1]
-    jaw = deformer_of(face).geometry.jaw
+    jaw = deformer_of(face).at(FacePose.of(jaw_open=opening)).jaw
     angle = math.atan2(jaw[2, 1], jaw[1, 1])
     assert angle == pytest.approx(math.radians(model.jaw.widest_deg) * opening, rel=1e-3)
 
@@ -144,14 +146,14 @@ def test_gaze_stays_in_the_ellipse_of_the_eye_hole(face):
     limits = parameter("gaze_yaw").high, parameter("gaze_pitch").high
     for turn in np.linspace(0, 2 * math.pi, 24):
         pose = FacePose().replace({"gaze_yaw": limits[0] * math.cos(turn), "gaze_pitch": limits[1] * math.sin(turn)})
-        x, y, z = deformer_of(face).deform(pose).eye_rotations[0] @ [0, 0, 1]
+        x, y, z = deformer_of(face).at(pose).eye_rotations[0] @ [0, 0, 1]
         yaw, pitch = math.degrees(math.atan2(x, z)), math.degrees(math.asin(y))
         eyes = FACES[face].eyes
         assert (yaw / eyes.yaw_limit_deg) ** 2 + (pitch / eyes.pitch_limit_deg) ** 2 < 1.03
 
 
 def test_gaze_and_head_turn_to_the_persons_left_and_up(face):
-    geometry = deformer_of(face).deform(FacePose.of(gaze_yaw=0.2, gaze_pitch=0.1, head_yaw=0.3, head_pitch=0.2))
+    geometry = deformer_of(face).at(FacePose.of(gaze_yaw=0.2, gaze_pitch=0.1, head_yaw=0.3, head_pitch=0.2))
     for turn in (*geometry.eye_rotations, geometry.head[:3, :3]):
         x, y, _ = turn @ [0, 0, 1]
         assert x > 0

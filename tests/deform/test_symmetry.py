@@ -29,11 +29,11 @@ def test_a_mirrored_pose_makes_the_mirrored_face(face, compiled):
     deformer = deformer_of(face, compiled=compiled)
     flip = np.array([-1, 1, 1])
     for pose in random_poses(200 if compiled else 6, seed=11):
-        one = deformer.deform(pose)
+        one = deformer.at(pose)
         vertices, eyes, jaw, head, heights = (
             array.copy() for array in (one.vertices, one.eye_rotations, one.jaw, one.head, one.wrinkles)
         )
-        other = deformer.deform(image(pose))
+        other = deformer.at(image(pose))
         np.testing.assert_allclose(other.vertices[model.mirror] * flip, vertices, atol=1e-5, rtol=0)
         np.testing.assert_allclose(other.wrinkles[model.mirror], heights, atol=1e-5, rtol=0)
         turned = np.outer(flip, flip)

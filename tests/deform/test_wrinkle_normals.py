@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from agentface.deform.finish import wrinkle_normals as shading
 from agentface.deform.finish import wrinkle_normals_compiled as compiled
 from agentface.deform.finish import wrinkles
-from agentface.mesh.normal_field import vertex_normals
+from agentface.mesh.normals import vertex_normals
 from tests.heads import head_model
 
 MODEL = head_model("amber")

@@ -12,7 +12,7 @@ from agentface.deform.finish import wrinkles_compiled as compiled
 from agentface.errors import DataError
 from agentface.head.trains import DrawnTrain, ZoneTrain, heights, inner_feet, parabolas, relief
 from agentface.head.wrinkles import read_wrinkles
-from agentface.mesh.normal_field import corner_normals, vertex_normals
+from agentface.mesh.normals import corner_normals, vertex_normals
 from agentface.parameters import COUNT, MUSCLES, NAMES, PARAMETERS, indices_of
 from tests.heads import head_model
 

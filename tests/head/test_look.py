@@ -33,7 +33,7 @@ def context():
 
 def drawn(face, look, context, quality="fast", camera="front"):
     model = load_model(face)
-    geometry = GeometricDeformer(model, compiled=False).deform(FacePose())
+    geometry = GeometricDeformer(model, compiled=False).at(FacePose())
     renderer = Renderer(model, load_look(model, look) if not hasattr(look, "hair") else look, context)
     return renderer.render(geometry, SIZE, camera, quality)
 

@@ -164,8 +164,8 @@ def test_the_finer_and_the_coarser_face_move_alike(both):
     model, made = both
     before, now = kept(model, made)
     for pose in POSES:
-        expected = GeometricDeformer(model, compiled=False).deform(pose).vertices[before]
-        moved = GeometricDeformer(made, compiled=False).deform(pose).vertices[now]
+        expected = GeometricDeformer(model, compiled=False).at(pose).vertices[before]
+        moved = GeometricDeformer(made, compiled=False).at(pose).vertices[now]
         # wrinkles rise along normals, which a coarse mesh has others of
         nearly = 1e-4 if len(made.vertices) > len(model.vertices) else 5e-4
         apart = np.linalg.norm(moved - expected, axis=1)

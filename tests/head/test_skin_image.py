@@ -333,7 +333,7 @@ def test_the_command_writes_the_template_and_the_guide(tmp_path):
         (["-o", "no/folder/a.png"], 1, "no folder"),
         (["-o", "a.png", "--face", "ambre"], 1, "did you mean amber"),
         (["-o", "a.png", "--look", "nobody"], 1, "known"),
-        (["-o", "a.png", "--deformer", "tissue"], 1, "tissue"),
+        (["-o", "a.png", "--deformer", "jelly"], 1, "geometric"),
         (["-o", "a.png", "--size", "20000"], 2, "4096"),
         (["--size", "256"], 2, "--output"),
     ],

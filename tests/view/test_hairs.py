@@ -167,7 +167,7 @@ def test_hair_left_out_is_not_missed(grown, style, monkeypatch):
     look = load_look(model)
     look = look.model_copy(update={"hair": own.model_copy(update={"style": style})})
     renderer = Renderer(model, look)
-    geometry = GeometricDeformer(model, compiled=False).deform(FacePose.of(jaw_open=0.6))
+    geometry = GeometricDeformer(model, compiled=False).at(FacePose.of(jaw_open=0.6))
     for yaw, pitch in ((0.1, 0.1), (-0.6, 0.1), (1.7, -0.1), (2.9, 0.2)):
         camera = named_view(model, "front").orbited(yaw, pitch)
         monkeypatch.undo()

@@ -19,7 +19,7 @@ SHUT = 0.03
 def opening(request):
     context = open_context()
     mouth = Mouth(context, Programs(context, textured=False)["part"], head_model(request.param))
-    yield lambda pose: mouth.opening(deformer_of(request.param).deform(pose))
+    yield lambda pose: mouth.opening(deformer_of(request.param).at(pose))
     context.release()
 
 

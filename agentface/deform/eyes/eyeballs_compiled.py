@@ -4,13 +4,12 @@ from __future__ import annotations
 
 import math
 
-from numba import njit
-
 from agentface.conventions import Floats
 from agentface.deform.eyes.eyeballs import EyesTables
+from agentface.kernel import kernel
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@kernel(error_model="numpy")
 def eye_angles(tables: EyesTables, values: Floats, side: int) -> tuple[float, float]:
     """Yaw and pitch in radians of the eye of ``side`` (0 left, 1 right) inside its eye hole."""
     inward = float(values[tables.vergence])
@@ -20,7 +19,7 @@ def eye_angles(tables: EyesTables, values: Floats, side: int) -> tuple[float, fl
     return yaw / outside, pitch / outside
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@kernel(error_model="numpy")
 def apply(tables: EyesTables, values: Floats, rotations: Floats) -> None:
     """Write the turns of both eyes about their centres into ``rotations (2, 3, 3)``."""
     for side in range(2):

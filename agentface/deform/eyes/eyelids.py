@@ -22,14 +22,13 @@ from agentface.conventions import SIDES, Floats, Indices
 from agentface.deform.eyes import eyeballs as eyes
 from agentface.deform.eyes.eyeballs import EyesTables
 from agentface.deform.eyes.lid_fields import LidFields, lid_fields
+from agentface.deform.lanes import LANES
 from agentface.head.model import HeadModel
 from agentface.parameters import indices_of
 
 HOLD, CLOSE, HIGHER, WIDEN, FOLLOW, TIGHTEN, SLANT = range(7)
 SHRINK, SHRINK_HIGHER, ACROSS, UP, TIGHT_ACROSS, TIGHT_UP, FLOOR = range(7, 14)
 """Rows of a block of :attr:`EyelidsTables.fields`."""
-LANES = 16
-"""Vertices a block: as many as the compiled loop moves at once."""
 LOOKING_UP = np.float32(0.7)
 """How much of following an eye upward a levator at full contraction leaves out: it has done the lifting."""
 _NEAR = np.float32(1e-6)  # m

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 
 from agentface.conventions import Floats, Indices
 from agentface.deform.eyes import eyelids
@@ -15,7 +14,6 @@ from agentface.deform.eyes.eyelids import (
     FOLLOW,
     HIGHER,
     HOLD,
-    LANES,
     LOOKING_UP,
     SHRINK,
     SHRINK_HIGHER,
@@ -27,7 +25,9 @@ from agentface.deform.eyes.eyelids import (
     WIDEN,
     EyelidsTables,
 )
+from agentface.deform.lanes import LANES
 from agentface.deform.simd import inverse_root, larger, load, splat, store
+from agentface.kernel import kernel
 
 FIELDS = FLOOR + 1
 _F = np.float32
@@ -37,10 +37,10 @@ _TINY = _F(1e-12)  # m^2
 _S1, _S2, _S3, _S4, _S5 = (_F(number) for number in (-1 / 6, 1 / 120, -1 / 5040, 1 / 362880, -1 / 39916800))
 _C1, _C2, _C3, _C4, _C5 = (_F(number) for number in (-1 / 2, 1 / 24, -1 / 720, 1 / 40320, -1 / 3628800))
 
-_coupled = njit(cache=True, nogil=True, error_model="numpy")(eyelids.coupled)
+_coupled = kernel(error_model="numpy")(eyelids.coupled)
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@kernel(error_model="numpy")
 def apply(tables: EyelidsTables, values: Floats, points: Floats) -> None:
     """Move the lids and what they take along of ``points (V + C, 3)`` m in place, to the parameters ``values``."""
     for side in range(2):
@@ -58,7 +58,7 @@ def apply(tables: EyelidsTables, values: Floats, points: Floats) -> None:
         _move(tables.vertex[side], tables.rest[side], tables.centre[side], tables.fields, levels, points)
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@kernel(error_model="numpy")
 def _move(
     vertex: Indices, rest: Floats, centre: Floats, fields: Floats, levels: tuple[np.float32, ...], points: Floats
 ) -> None:

@@ -4,13 +4,12 @@ from __future__ import annotations
 
 import math
 
-from numba import njit
-
 from agentface.conventions import Floats
 from agentface.deform.finish.head_turn import HeadTables
+from agentface.kernel import kernel
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@kernel(error_model="numpy")
 def apply(tables: HeadTables, values: Floats, transform: Floats) -> None:
     """Write the turn of the head about the neck into ``transform (4, 4)``."""
     yaw, pitch, roll = float(values[tables.yaw]), float(values[tables.pitch]), float(values[tables.roll])

@@ -1,37 +1,40 @@
-"""The neck: where the head turns, its skin turns less and less down to the collar."""
+"""The neck: where the head turns, its skin turns less and less down to the collar.
+
+A point p whose share of the turn is w goes to w H p + (1 - w) p, with H the head's turn. The geometry is in the head's
+axes, which are turned with it, so that there it goes to w p + (1 - w) H^-1 p.
+"""
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 
-from agentface.conventions import Floats
+from agentface.conventions import Floats, Indices
 from agentface.head.model import HeadModel
+from agentface.mesh.smoothstep import smoothstep
 
 _FULL, _NONE = -0.10, -1.15  # eye separations below the jaw line
+_SHORTEST = np.float32(1e-18)
 
 
-class Neck:
-    """The part of the skin that does not turn fully with the head.
+class NeckTables(NamedTuple):
+    """The skin that does not turn fully with the head.
 
-    A point ``p`` at the share ``w`` goes to ``w H p + (1 - w) p``, with ``H`` the head's turn.
+    Attributes:
+        where: ``(N,)`` int32 vertices.
+        stays: ``(N,)`` float32 0..1, the part 1 - w of the turn that each leaves out.
     """
 
-    def __init__(self, model: HeadModel) -> None:
-        share = shares(model)
-        self._where = np.flatnonzero(share < 1.0)
-        self._share = share[self._where][:, None]
+    where: Indices
+    stays: Floats
 
-    def hold(self, head: Floats, vertices: Floats, normals: Floats) -> None:
-        """Move ``vertices (V, 3)`` and turn ``normals`` in place, so that ``head (4, 4)`` brings them home.
 
-        The picture turns all of the skin by ``head``: what is to stay is turned back before.
-        """
-        turn = head[:3, :3]
-        if np.array_equal(turn, np.eye(3, dtype=np.float32)):
-            return
-        for field, offset in ((vertices, head[:3, 3]), (normals, np.zeros(3, np.float32))):
-            kept = field[self._where]
-            field[self._where] = self._share * kept + (1.0 - self._share) * ((kept - offset) @ turn)
+def prepare(model: HeadModel) -> NeckTables:
+    """The tables of a face."""
+    stays = np.float32(1.0) - shares(model)
+    where = np.flatnonzero(stays > 0.0).astype(np.int32)
+    return NeckTables(where, np.ascontiguousarray(stays[where]))
 
 
 def shares(model: HeadModel) -> Floats:
@@ -40,5 +43,16 @@ def shares(model: HeadModel) -> Floats:
     slope = (chin[1] - angle[1]) / (chin[2] - angle[2])
     line = angle[1] + slope * np.maximum(model.vertices[:, 2] - angle[2], 0.0)
     below = (model.vertices[:, 1] - line) / model.landmarks.eye_separation
-    t = np.clip((below - _NONE) / (_FULL - _NONE), 0.0, 1.0)
-    return np.asarray(t * t * (3.0 - 2.0 * t), np.float32)
+    return np.asarray(smoothstep(_NONE, _FULL, below), np.float32)
+
+
+def apply(tables: NeckTables, head: Floats, vertices: Floats, normals: Floats, smooth: Floats) -> None:
+    """Hold the neck back in place, where ``head (4, 4)`` turns all of the rest: ``vertices (V, 3)`` m, unit normals."""
+    turn, offset = head[:3, :3], head[:3, 3]
+    if np.array_equal(turn, np.eye(3, dtype=np.float32)):
+        return
+    where, stays = tables.where, tables.stays[:, None]
+    vertices[where] += stays * ((vertices[where] - offset) @ turn - vertices[where])
+    for field in (normals, smooth):
+        mixed = field[where] + stays * (field[where] @ turn - field[where])
+        field[where] = mixed / np.maximum(np.linalg.norm(mixed, axis=1, keepdims=True), _SHORTEST)

@@ -9,7 +9,7 @@ import numpy as np
 from agentface.conventions import Floats, Indices
 from agentface.deform.finish.wrinkles import WrinkleTables
 from agentface.head.model import HeadModel
-from agentface.mesh.normal_field import vertex_normals
+from agentface.mesh.normals import vertex_normals
 
 
 class ShadingTables(NamedTuple):

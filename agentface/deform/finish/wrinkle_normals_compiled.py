@@ -5,16 +5,16 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from numba import njit
 
 from agentface.conventions import Floats
 from agentface.deform.finish.wrinkle_normals import ShadingTables
+from agentface.kernel import kernel
 from agentface.mesh.normals_compiled import add_areas, make_unit
 
 _ZERO = np.float32(0.0)
 
 
-@njit(cache=True, nogil=True, error_model="numpy", fastmath=True)
+@kernel(error_model="numpy", fastmath=True)
 def apply(tables: ShadingTables, heights: Floats, vertices: Floats, smooth: Floats, out: Floats) -> None:
     """Write to ``out (V, 3)`` the unit normals of ``vertices (V, 3)``, raised by ``heights (V,)``."""
     before, after = smooth.ravel(), out.ravel()
@@ -24,7 +24,7 @@ def apply(tables: ShadingTables, heights: Floats, vertices: Floats, smooth: Floa
         _renew(tables, vertices, smooth, out)
 
 
-@njit(cache=True, nogil=True, error_model="numpy", fastmath=True)
+@kernel(error_model="numpy", fastmath=True)
 def _renew(tables: ShadingTables, vertices: Floats, smooth: Floats, out: Floats) -> None:
     for place in range(tables.near.shape[0]):
         for axis in range(3):
@@ -38,7 +38,7 @@ def _renew(tables: ShadingTables, vertices: Floats, smooth: Floats, out: Floats)
             out[vertex, axis] = smooth[vertex, axis]
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@kernel(error_model="numpy")
 def _highest(tables: ShadingTables, heights: Floats) -> Any:
     highest = _ZERO
     for place in range(tables.raised.shape[0]):

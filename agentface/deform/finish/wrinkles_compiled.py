@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 
 from agentface.conventions import Floats
 from agentface.deform.finish.wrinkles import WrinkleTables
+from agentface.kernel import kernel
 
 _ZERO, _ONE = np.float32(0.0), np.float32(1.0)
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@kernel(error_model="numpy")
 def levels(tables: WrinkleTables, values: Floats, out: Floats) -> None:
     """The trains' contractions ``out (K,)``."""
     for train in range(tables.parameters.shape[0]):
@@ -21,7 +21,7 @@ def levels(tables: WrinkleTables, values: Floats, out: Floats) -> None:
         out[train] = min(level, _ONE)
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@kernel(error_model="numpy")
 def heights(tables: WrinkleTables, values: Floats, out: Floats) -> None:
     """The highest of the trains at each vertex, ``out (V,)`` m."""
     out[:] = _ZERO
@@ -36,7 +36,7 @@ def heights(tables: WrinkleTables, values: Floats, out: Floats) -> None:
                 out[vertex] = max(out[vertex], level * tables.heights[entry])
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@kernel(error_model="numpy")
 def raise_vertices(tables: WrinkleTables, heights: Floats, normals: Floats, vertices: Floats) -> None:
     """Moves ``vertices (V, 3)`` along ``normals (V, 3)`` by ``heights (V,)`` m."""
     for vertex in tables.raised:

@@ -6,16 +6,16 @@ import math
 from typing import Any
 
 import numpy as np
-from numba import njit
 
 from agentface.conventions import Floats, Indices
 from agentface.deform.mouth.contact import CORNER, FARTHEST, PARTINGS, ROUNDS, SPREAD, STEEP, ContactTables
+from agentface.kernel import kernel
 
 _ZERO, _QUARTER, _HALF, _ONE = np.float32(0.0), np.float32(0.25), np.float32(0.5), np.float32(1.0)
 _TWO, _THREE, _FOUR, _CLOSEST = np.float32(2.0), np.float32(3.0), np.float32(4.0), np.float32(1e-6)
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@kernel(error_model="numpy")
 def apply(tables: ContactTables, values: Floats, points: Floats) -> None:
     """Shuts pressed lips, parts lips that overlap, and pushes them out of the teeth; as its twin."""
     for _ in range(ROUNDS if values[tables.press] > _ZERO else 1):
@@ -41,7 +41,7 @@ def apply(tables: ContactTables, values: Floats, points: Floats) -> None:
             break
 
 
-@njit(cache=True, nogil=True, error_model="numpy", inline="always")
+@kernel(error_model="numpy", inline="always")
 def _push(tables: ContactTables, arch: int, k: int, x: float, y: float, z: float) -> Any:
     kept = tables.kept[arch, k]
     if kept < _ZERO:
@@ -62,7 +62,7 @@ def _push(tables: ContactTables, arch: int, k: int, x: float, y: float, z: float
     return push * slope, push
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@kernel(error_model="numpy")
 def _close_lips(tables: ContactTables, press: np.float32, points: Floats) -> None:
     share = min(_ONE, press / np.float32(tables.shut_from))
     if share <= _ZERO:
@@ -88,7 +88,7 @@ def _close_lips(tables: ContactTables, press: np.float32, points: Floats) -> Non
     _move(tables, move, points)
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@kernel(error_model="numpy")
 def _part_lips(tables: ContactTables, points: Floats) -> bool:
     """Whether any lip had to give way: where none had, another round would find none."""
     columns = tables.grid.shape[1]
@@ -106,14 +106,14 @@ def _part_lips(tables: ContactTables, points: Floats) -> bool:
     return True
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@kernel(error_model="numpy")
 def _move(tables: ContactTables, move: Floats, points: Floats) -> None:
     for ring in range(tables.grid.shape[0]):
         for column in range(tables.grid.shape[1]):
             points[tables.grid[ring, column], 1] += tables.fall[ring] * move[column]
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@kernel(error_model="numpy")
 def _push_apart(
     tables: ContactTables,
     own: Indices,
@@ -143,7 +143,7 @@ def _push_apart(
     return touched
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@kernel(error_model="numpy")
 def _rings(tables: ContactTables, columns: Indices, points: Floats) -> Any:
     """``(rings, K)`` m twice: x and y of the rings that may touch, in these columns."""
     across = np.empty((tables.last + 1 - tables.first, columns.shape[0]), np.float32)
@@ -155,7 +155,7 @@ def _rings(tables: ContactTables, columns: Indices, points: Floats) -> Any:
     return across, up
 
 
-@njit(cache=True, nogil=True, error_model="numpy", inline="always")
+@kernel(error_model="numpy", inline="always")
 def _overlap(across: Floats, up: Floats, place: Floats, sign: np.float32) -> Any:
     x = place[0]
     last = across.shape[0] - 1

@@ -150,13 +150,3 @@ def apply(tables: JawTables, values: Floats, points: Floats) -> None:
     up, forward = (points[tables.where, 1:] - tables.hinge).T
     points[tables.where, 1] = tables.hinge[0] + cosine * up - sine * forward
     points[tables.where, 2] = tables.hinge[1] + sine * up + cosine * forward
-
-
-def transform(tables: JawTables, values: Floats, out: Floats) -> None:
-    """Write the turn of the whole jaw, that of the lower teeth and the tongue, into ``out (4, 4)``."""
-    angle = tables.widest * float(values[tables.parameter])
-    cosine, sine = math.cos(angle), math.sin(angle)
-    rotation: Doubles = np.array([[cosine, -sine], [sine, cosine]])
-    out[:] = np.eye(4)
-    out[1:3, 1:3] = rotation
-    out[1:3, 3] = tables.hinge - rotation @ tables.hinge

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 
 from agentface.conventions import Floats
 from agentface.deform.mouth.jaw import JawTables
+from agentface.kernel import kernel
 
 _ONE = np.float32(1.0)
 # of the Taylor series of the cosine and the sine in nested form: exact in single precision up to 60 degrees
@@ -14,7 +14,7 @@ _COSINE = tuple(np.float32(-1.0 / (n * (n - 1))) for n in (2, 4, 6, 8, 10))
 _SINE = tuple(np.float32(-1.0 / (n * (n - 1))) for n in (3, 5, 7, 9, 11))
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@kernel(error_model="numpy")
 def apply(tables: JawTables, values: Floats, points: Floats) -> None:
     """Turn ``points (P, 3)`` m in place, to the pose ``values``; a closed jaw leaves them as they are."""
     angle = np.float32(tables.widest * values[tables.parameter])
@@ -39,16 +39,3 @@ def apply(tables: JawTables, values: Floats, points: Floats) -> None:
         up, forward = points[point, 1] - y, points[point, 2] - z
         points[point, 1] = y + cosine * up - sine * forward
         points[point, 2] = z + sine * up + cosine * forward
-
-
-@njit(cache=True, nogil=True, error_model="numpy")
-def transform(tables: JawTables, values: Floats, out: Floats) -> None:
-    """Write the turn of the whole jaw, that of the lower teeth and the tongue, into ``out (4, 4)``."""
-    angle = tables.widest * values[tables.parameter]
-    cosine, sine = np.cos(angle), np.sin(angle)
-    out[:] = 0.0
-    out[0, 0] = out[3, 3] = 1.0
-    out[1, 1] = out[2, 2] = cosine
-    out[1, 2], out[2, 1] = -sine, sine
-    out[1, 3] = tables.hinge[0] - (cosine * tables.hinge[0] - sine * tables.hinge[1])
-    out[2, 3] = tables.hinge[1] - (sine * tables.hinge[0] + cosine * tables.hinge[1])

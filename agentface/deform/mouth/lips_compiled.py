@@ -5,20 +5,20 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from numba import njit
 
 from agentface.conventions import Floats, Indices
 from agentface.deform.mouth import lips
 from agentface.deform.mouth.lip_surface import COLUMNS, ROWS
 from agentface.deform.mouth.lips import RED, THINNED, LipTables
+from agentface.kernel import kernel
 
 _CONTROLS = COLUMNS * ROWS
 _ZERO, _HALF, _ONE = np.float32(0.0), np.float32(0.5), np.float32(1.0)
 _THINNED = np.array(THINNED)
-_thinning = njit(cache=True, nogil=True, error_model="numpy")(lips.thinning)
+_thinning = kernel(error_model="numpy")(lips.thinning)
 
 
-@njit(cache=True, nogil=True, error_model="numpy", inline="always")
+@kernel(error_model="numpy", inline="always")
 def _mean(controls: Indices, weights: Floats, row: int, count: int, moved: Floats) -> tuple[Any, Any, Any]:
     """The movements ``moved (C, 3)`` of a row of ``controls (N, K)``, by ``weights (N, K)``.
 
@@ -33,7 +33,7 @@ def _mean(controls: Indices, weights: Floats, row: int, count: int, moved: Float
     return x, y, z
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@kernel(error_model="numpy")
 def contract(tables: LipTables, values: Floats, points: Floats) -> None:
     """Orbicularis oris moves the control points and the skin at the patch's edge; as its twin."""
     pucker, press = values[tables.parameters[0]], values[tables.parameters[1]]
@@ -78,7 +78,7 @@ def contract(tables: LipTables, values: Floats, points: Floats) -> None:
         points[start + i, 2] += moved[i, 2]
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@kernel(error_model="numpy")
 def surface(tables: LipTables, points: Floats) -> None:
     """The vertices of the patch take the surface's movement; as its twin."""
     start = tables.skin_count

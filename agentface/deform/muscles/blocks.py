@@ -8,10 +8,11 @@ import numpy as np
 import numpy.typing as npt
 
 from agentface.conventions import Doubles, Floats, Indices
-from agentface.deform.muscles.combine_compiled import FIELDS, LANES
-from agentface.deform.simd import PART
+from agentface.deform.lanes import LANES, PART
 from agentface.head.muscle_set import MuscleSet
 
+FIELDS = 12
+"""Constants a muscle."""
 _MARGIN = 1e-6
 """m: more than single precision loses over a face."""
 _NEAR = 0.008

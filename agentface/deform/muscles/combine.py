@@ -131,7 +131,7 @@ class Combiner:
         bad = schedule(self._levels, self._step, self._parts)
         if bad >= 0:
             raise self._refusal(bad, contractions)
-        self._kernels.contract(self._rest, *self._blocks, self._parts, out)
+        self._kernels.contract(self._rest, self._blocks, self._parts, out)
 
     def _apply_reference(self, contractions: Doubles, out: Floats) -> None:
         bad = np.flatnonzero(~((contractions >= 0.0) & (contractions <= 1.0)))

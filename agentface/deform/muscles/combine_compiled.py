@@ -5,12 +5,12 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 
 from agentface.conventions import Doubles, Floats, Indices
+from agentface.deform.lanes import LANES
+from agentface.deform.muscles.blocks import FIELDS, Blocks
 from agentface.deform.muscles.combine import NOTHING
 from agentface.deform.simd import (
-    WIDTH,
     inverse_root,
     larger,
     largest,
@@ -21,11 +21,7 @@ from agentface.deform.simd import (
     tile,
     where_positive,
 )
-
-LANES = WIDTH
-"""Vertices a block."""
-FIELDS = 12
-"""Constants a muscle."""
+from agentface.kernel import kernel
 
 _F = np.float32
 _ZERO, _ONE = _F(0.0), _F(1.0)
@@ -36,7 +32,7 @@ _TINY = _F(1e-20)
 _Q1, _Q2, _Q3 = _F(-0.2336987033), _F(0.0199532354), _F(-0.0008582032)
 
 
-@njit(cache=True, nogil=True)
+@kernel()
 def slice_steps(contractions: Doubles, step: float, parts: Floats) -> int:
     """Fills ``parts (S, M)`` with slices of at most ``step``; returns the first contraction not in 0..1, or -1."""
     for muscle in range(contractions.shape[0]):
@@ -49,7 +45,7 @@ def slice_steps(contractions: Doubles, step: float, parts: Floats) -> int:
     return -1
 
 
-@njit(cache=True, nogil=True)
+@kernel()
 def spread(contractions: Doubles, step: float, parts: Floats) -> int:
     """Fills the diagonal of ``parts (M, M)``: one muscle a step; returns as :func:`slice_steps` does."""
     for muscle in range(contractions.shape[0]):
@@ -60,35 +56,9 @@ def spread(contractions: Doubles, step: float, parts: Floats) -> int:
     return -1
 
 
-@njit(cache=True, nogil=True)
-def contract(
-    rest: Floats,
-    home: Floats,
-    vertex: Indices,
-    first: Indices,
-    owner: Indices,
-    slack: Floats,
-    strongest: Floats,
-    pull: Floats,
-    fibre: Floats,
-    parts: Floats,
-    out: Floats,
-) -> None:
-    """Moves the vertices by a schedule of contractions; shapes as in :class:`agentface.deform.muscles.blocks.Blocks`.
-
-    Args:
-        rest: ``(V, 3)`` m.
-        home: ``(B, 3 * LANES)`` m, rest positions by block: all x, all y, all z.
-        vertex: ``(B, LANES)``, the vertex of each lane.
-        first: ``(B + 1,)``, the range of pairs of each block.
-        owner: ``(P,)``, the muscle of each pair.
-        slack: ``(P,)`` m, rising within a block: how far its vertices travel before one meets the muscle.
-        strongest: ``(P,)`` m, the largest of ``pull``.
-        pull: ``(P, LANES)`` m, elasticity times reach.
-        fibre: ``(M, FIELDS, PART)``, a muscle's constants, each as often as a register has lanes.
-        parts: ``(S, M)``, what contracts in each step.
-        out: ``(V, 3)`` m.
-    """
+@kernel()
+def contract(rest: Floats, blocks: Blocks, parts: Floats, out: Floats) -> None:
+    """Moves the vertices, ``rest (V, 3)`` m, by a schedule of contractions ``parts (S, M)``, to ``out (V, 3)`` m."""
     still, moved = rest.ravel(), out.ravel()
     for index in range(still.shape[0]):
         moved[index] = still[index]
@@ -102,26 +72,26 @@ def contract(
     pairs = np.empty(parts.shape[1] + 1, dtype=np.int32)
     muscles = np.empty(parts.shape[1] + 1, dtype=np.int32)
     bounds = np.empty(parts.shape[1] + 1, dtype=np.float32)
-    for block in range(home.shape[0]):
+    for block in range(blocks.home.shape[0]):
         count = 0
         travel = _MARGIN
-        for pair in range(first[block], first[block + 1]):
-            if slack[pair] > travel:
+        for pair in range(blocks.first[block], blocks.first[block + 1]):
+            if blocks.slack[pair] > travel:
                 break
-            muscle = owner[pair]
-            pairs[count], muscles[count], bounds[count] = pair, muscle, slack[pair]
+            muscle = blocks.owner[pair]
+            pairs[count], muscles[count], bounds[count] = pair, muscle, blocks.slack[pair]
             count += acts[muscle]
-            travel += whole[muscle] * strongest[pair]
+            travel += whole[muscle] * blocks.strongest[pair]
         if count and bounds[0] == _ZERO:
-            contract_block(home, block, pairs, muscles, bounds, count, pull, fibre, parts, lanes)
+            contract_block(blocks.home, block, pairs, muscles, bounds, count, blocks.pull, blocks.fibre, parts, lanes)
             for lane in range(LANES):
-                row = vertex[block, lane]
+                row = blocks.vertex[block, lane]
                 out[row, 0] = lanes[lane]
                 out[row, 1] = lanes[LANES + lane]
                 out[row, 2] = lanes[2 * LANES + lane]
 
 
-@njit(cache=True, nogil=True, fastmath=True, error_model="numpy")
+@kernel(fastmath=True, error_model="numpy")
 def contract_block(
     home: Floats,
     block: int,

@@ -5,16 +5,16 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 
 from agentface.conventions import Floats
 from agentface.deform.muscles import squash_compiled as squash
 from agentface.deform.muscles.limits import LimitTables
+from agentface.kernel import kernel
 
 _ONE = np.float32(1.0)
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@kernel(error_model="numpy")
 def apply(tables: LimitTables, points: Floats) -> None:
     """Bound the squash and the travel of ``points (P, 3)`` m in place; points within the bounds stay as they are."""
     squash.apply(tables.squash, points)

@@ -5,22 +5,22 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from numba import njit
 
 from agentface.conventions import Floats
 from agentface.deform.muscles.squash import SquashTables
+from agentface.kernel import kernel
 
 _ZERO, _ONE = np.float32(0.0), np.float32(1.0)
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@kernel(error_model="numpy")
 def apply(tables: SquashTables, points: Floats) -> None:
     """Raise the squashed heights of ``points (P, 3)`` m in place; points without any stay as they are."""
     for _ in range(tables.passes):
         _pass_over(tables, points)
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@kernel(error_model="numpy")
 def _pass_over(tables: SquashTables, points: Floats) -> None:
     """One pass over the heights, pair by pair."""
     least, reach = np.float32(tables.least), np.float32(tables.least - tables.flat)
@@ -32,7 +32,7 @@ def _pass_over(tables: SquashTables, points: Floats) -> None:
             _raise(tables, pair, 1, (least - other) / reach, reach, points)
 
 
-@njit(cache=True, nogil=True, error_model="numpy", inline="always")
+@kernel(error_model="numpy", inline="always")
 def _left(tables: SquashTables, pair: int, side: int, points: Floats) -> Any:
     p, a, b = tables.vertices[pair, side, 0], tables.vertices[pair, side, 1], tables.vertices[pair, side, 2]
     foot, left = tables.foot[pair, side], _ZERO
@@ -42,7 +42,7 @@ def _left(tables: SquashTables, pair: int, side: int, points: Floats) -> Any:
     return left
 
 
-@njit(cache=True, nogil=True, error_model="numpy", inline="always")
+@kernel(error_model="numpy", inline="always")
 def _raise(tables: SquashTables, pair: int, side: int, s: Any, reach: Any, points: Floats) -> None:
     push = reach * s * s / (_ONE + s)
     for i in range(3):

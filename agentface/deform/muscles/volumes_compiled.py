@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 
 from agentface.conventions import Floats
 from agentface.deform.muscles.volumes import VolumeTables
+from agentface.kernel import kernel
 
 _ZERO, _ONE = np.float32(0.0), np.float32(1.0)
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@kernel(error_model="numpy")
 def apply(tables: VolumeTables, values: Floats, points: Floats) -> None:
     """Move ``points (P, 3)`` m in place, to the parameters ``values``."""
     for volume in range(tables.parameters.shape[0]):

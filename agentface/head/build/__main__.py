@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import tempfile
 from pathlib import Path
 
 import click
@@ -25,7 +26,7 @@ _CREDIT = "CC0 1.0: MakeHuman base mesh hm08 and targets, Face Units by Mika Suo
 @click.option("--source", type=click.Path(path_type=Path), help="Where the base mesh is, or goes.")
 def main(faces: tuple[str, ...], source: Path | None) -> None:
     """Build FACES (all that have a recipe, if none is named) from the CC0 base mesh."""
-    mesh = BaseMesh(fetch(source or cache_folder() / "source"))
+    mesh = BaseMesh(fetch(source or (cache_folder() or Path(tempfile.gettempdir())) / "source"))
     topology = HeadTopology(mesh)
     parts = load(data_folder("regions") / "anatomy.yaml", PartsFile)
     folders = [data_folder("regions") / face for face in faces]

@@ -10,7 +10,6 @@ import numpy as np
 
 from agentface.conventions import Doubles
 from agentface.deform.muscles.combine import STEP, Combiner
-from agentface.mesh.normal_field import NormalField
 from agentface.studies.bench.timing import blendshapes, interleave, one_thread
 
 if TYPE_CHECKING:
@@ -35,6 +34,7 @@ def run(model: HeadModel | None = None, rounds: int = 200) -> dict[str, Any]:
         from agentface.head.model import load_model
 
         model = load_model()
+    from agentface.mesh.normals_compiled import write_normals
     from agentface.studies.bench import plain
 
     count = len(model.muscles)
@@ -54,8 +54,7 @@ def run(model: HeadModel | None = None, rounds: int = 200) -> dict[str, Any]:
     every = np.full(count, -1, dtype=np.int64)
     tasks: dict[str, Callable[[], Any]] = blendshapes(rest.size, draw)
     tasks["copy"] = lambda: np.copyto(out, rest)
-    field = NormalField(model.triangles, len(rest))
-    tasks["normals"] = lambda: field.compute(rest, out)
+    tasks["normals"] = partial(write_normals, rest, model.triangles, out)
     for name, levels in (("active_8", some), ("active_all", np.ones(count))):
         tasks[f"{name}.ours"] = tasks[f"{name}.ours_warm"] = partial(combiner.apply, levels, out)
         tasks[f"{name}.loop"] = loops(levels, every)

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from agentface.deform.pipeline import GeometricDeformer
-from agentface.mesh.normal_field import NormalField
+from agentface.mesh.normals_compiled import write_normals
 from agentface.parameters import PARAMETERS, FacePose
 from agentface.studies.bench.deform import SMILE
 from agentface.studies.bench.timing import blendshapes, interleave, one_thread
@@ -60,10 +60,11 @@ def run(model: HeadModel | None = None, rounds: int = 200, finest: int = FINEST)
     deformer, faces = GeometricDeformer(model), poses()
     tasks = _baseline(model)
     for name, pose in faces.items():
-        whole = partial(deformer.deform, pose)
+        whole = partial(deformer.step, pose, 1 / 60)
         tasks |= {f"{name}.frame": whole, f"{name}.frame_warm": whole}
         # behind a whole frame, each stage finds what the ones before it left
-        tasks |= {f"{name}.stage.{stage}": partial(act, pose) for stage, act in deformer.stages().items()}
+        stages = deformer.stages(deformer.at(pose))
+        tasks |= {f"{name}.stage.{stage}": partial(act, pose) for stage, act in stages.items()}
     with one_thread() as limited:
         times = interleave(tasks, rounds)
     report: dict[str, Any] = {"vertices": len(model.vertices), "gemv_one_thread": limited, "baseline": {}}
@@ -79,9 +80,7 @@ def run(model: HeadModel | None = None, rounds: int = 200, finest: int = FINEST)
 
 def _baseline(model: HeadModel) -> dict[str, Callable[[], Any]]:
     tasks = blendshapes(model.vertices.size, np.random.default_rng(2))
-    normals = partial(
-        NormalField(model.triangles, len(model.vertices)).compute, model.vertices, np.empty_like(model.vertices)
-    )
+    normals = partial(write_normals, model.vertices, model.triangles, np.empty_like(model.vertices))
     return tasks | {"normals": normals, "normals_warm": normals}
 
 
@@ -98,7 +97,7 @@ def _figures(name: str, times: dict[str, float], baseline: dict[str, float]) -> 
 
 def _growth(models: list[HeadModel], pose: FacePose, rounds: int) -> dict[str, Any]:
     deformers = [GeometricDeformer(model) for model in models]
-    tasks = {str(index): partial(deformer.deform, pose) for index, deformer in enumerate(deformers)}
+    tasks = {str(index): partial(deformer.step, pose, 1 / 60) for index, deformer in enumerate(deformers)}
     times = interleave(tasks, rounds)
     vertex = [1e3 * times[str(index)] / len(model.vertices) for index, model in enumerate(models)]
     return {

@@ -11,7 +11,7 @@ import numpy.typing as npt
 
 from agentface.conventions import Doubles, Indices
 from agentface.deform.muscles.combine import STEP, Combiner
-from agentface.mesh.normal_field import NormalField
+from agentface.mesh.normals_compiled import write_normals
 from agentface.studies.bench import loops, plain
 from agentface.studies.bench.timing import interleave
 
@@ -35,7 +35,7 @@ class Frames:
     def __init__(self, model: HeadModel) -> None:
         muscles, rest = model.muscles, model.vertices
         self.triangles = model.triangles
-        self._combiner, self._field = Combiner(rest, muscles), NormalField(model.triangles, len(rest))
+        self._combiner = Combiner(rest, muscles)
         self._constants, self._reach = loops.constants(muscles), muscles.reach
         self._flags = plain.region_flags(muscles, model.regions.region_of)
         self._regions = model.regions.region_of
@@ -74,7 +74,7 @@ class Frames:
         elif way == "improved":
             loops.shared_normals(moved, self.triangles, out)
         else:
-            self._field.compute(moved, out)
+            write_normals(moved, self.triangles, out)
 
     def result(self, way: str) -> tuple[Doubles, Doubles]:
         """Positions and normals ``(T, 3, 3)`` of the polygons' corners, as last computed."""

@@ -125,7 +125,7 @@ def _frame(
 ) -> None:
     group = f"{quality} {_name(screen.size)}"
     with stages.stage(f"{group}.deform"):
-        geometry = deformer.deform(next(poses))
+        geometry = deformer.at(next(poses))
     with stages.stage(f"{group}.upload"):
         renderer.upload_skin(geometry)
         renderer.upload_wrinkles(geometry)
@@ -137,7 +137,7 @@ def _frame(
         screen.read()
     for _ in range(_IN_A_ROW):
         with stages.stage(f"{group}.frame"):
-            renderer.draw(deformer.deform(next(poses)), screen, "front", quality)
+            renderer.draw(deformer.at(next(poses)), screen, "front", quality)
             screen.read()
 
 

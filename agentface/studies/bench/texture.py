@@ -57,7 +57,7 @@ def _laid(model: HeadModel) -> dict[str, Any]:
     }
     strain = {}
     for emotion in EMOTIONS:
-        strained = _frames(deformer.deform(infer.pose({emotion: 1.0})).vertices[model.triangles])
+        strained = _frames(deformer.at(infer.pose({emotion: 1.0})).vertices[model.triangles])
         axes = _axes(strained @ np.linalg.inv(rest))
         strain[emotion] = {
             "stretch_p95": _share(axes[:, 0], area, 0.95),
@@ -68,7 +68,7 @@ def _laid(model: HeadModel) -> dict[str, Any]:
 
 def _drawn(model: HeadModel, rounds: int, size: tuple[int, int]) -> dict[str, Any]:
     """What each quality keeps of a face that wears its own template, and what that costs."""
-    smiling = GeometricDeformer(model).deform(default_inference().pose({"happiness": 0.5}))
+    smiling = GeometricDeformer(model).at(default_inference().pose({"happiness": 0.5}))
     renderers = {"plain": Renderer(model), "worn": _wearing_its_template(model)}
     report: dict[str, Any] = {}
     for quality in QUALITIES:

@@ -67,7 +67,7 @@ def measure(model: HeadModel, units: dict[int, ActionUnit]) -> dict[int, Agreeme
     rest = model.vertices
     result = {}
     for number, unit in units.items():
-        moved = deformer.deform(FacePose.of(**unit.muscles)).vertices - rest
+        moved = deformer.at(FacePose.of(**unit.muscles)).vertices - rest
         result[number] = agreement(model, moved, unit.shape(model), fitted=unit.fitted)
     return result
 

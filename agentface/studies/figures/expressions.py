@@ -23,7 +23,7 @@ def figures(face: str | Path) -> dict[str, bytes]:
     for camera in ("front", "three-quarter"):
         for name, number in EMOTIONS.items():
             state = EmotionState() if name == "neutral" else EmotionState.of({name: 1.0})
-            geometry = deformer.deform(inference.pose(state))
+            geometry = deformer.at(inference.pose(state))
             picture = renderer.render(geometry, _SIZE, camera, "portrait")
             panels.append((picture, name, f"{number} of the paper" if camera == "front" else ""))
     return {"emotional-faces.png": png(sheet(panels, columns=len(EMOTIONS)))}

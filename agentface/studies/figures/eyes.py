@@ -28,7 +28,7 @@ def figures(face: str | Path) -> dict[str, bytes]:
     deformer, renderer = GeometricDeformer(model), Renderer(model)
 
     def picture(pose: FacePose, camera: Camera, size: tuple[int, int]) -> Bytes:
-        return renderer.render(deformer.deform(pose), size, camera, "portrait")
+        return renderer.render(deformer.at(pose), size, camera, "portrait")
 
     both = _camera(model, 0.0, 11.0)
     closing = [

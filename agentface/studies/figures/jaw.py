@@ -25,7 +25,7 @@ def figures(face: str | Path) -> dict[str, bytes]:
     for name, turn in _TURNS_DEG.items():
         camera = _close(model, math.radians(turn))
         for opening in OPENINGS:
-            picture = renderer.render(deformer.deform(FacePose.of(jaw_open=opening)), _SIZE, camera, "portrait")
+            picture = renderer.render(deformer.at(FacePose.of(jaw_open=opening)), _SIZE, camera, "portrait")
             degrees = f"the jaw turns by {opening * model.jaw.widest_deg:.0f} degrees"
             panels.append((picture, f"open {opening:g}", degrees if name == "front" else ""))
     return {"jaw.png": png(sheet(panels, columns=len(OPENINGS)))}

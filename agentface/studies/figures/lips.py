@@ -93,7 +93,7 @@ class _Stage:
         target = self._centre.astype(np.float64)
         eye = target + _AWAY * np.array([np.sin(yaw), 0.05, np.cos(yaw)])
         view = Camera(_triple(eye), _triple(target), 2 * float(np.arctan(0.5 * _WIDTH * self._unit / _AWAY)))
-        return self._renderer.render(self._deformer.deform(pose), (_SIDE, _SIDE), view, "portrait")
+        return self._renderer.render(self._deformer.at(pose), (_SIDE, _SIDE), view, "portrait")
 
     def _points(self, pose: FacePose) -> Floats:
         points = np.concatenate([self._model.vertices, self._tables.control_rest])

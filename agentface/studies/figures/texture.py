@@ -39,7 +39,7 @@ def figures(face: str | Path) -> dict[str, bytes]:
         ("happiness 0.8", {"happiness": 0.8}),
         ("surprise 0.8", {"surprise": 0.8}),
     ):
-        picture = renderer.render(deformer.deform(infer.pose(emotions)), _SIZE, "front", "portrait")
+        picture = renderer.render(deformer.at(infer.pose(emotions)), _SIZE, "front", "portrait")
         panels.append((picture, title, "skin.texture"))
     return {"texture.png": png(sheet(panels, columns=len(panels)))}
 

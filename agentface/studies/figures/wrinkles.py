@@ -12,7 +12,7 @@ from agentface.conventions import Bytes, Doubles, Indices
 from agentface.deform.pipeline import GeometricDeformer
 from agentface.head.model import HeadModel, load_model
 from agentface.head.trains import Train, ZoneTrain, heights, inner_feet
-from agentface.mesh.normal_field import corner_normals
+from agentface.mesh.normals import corner_normals
 from agentface.parameters import FacePose
 from agentface.studies.figures.gouraud import smooth_picture
 from agentface.studies.figures.mesh_view import MeshView, draw_mesh
@@ -73,7 +73,7 @@ def _forehead(model: HeadModel) -> Image:
     turned = _pitched(points)
     strip = MeshView(turned.mean(axis=0), 0.068, 20.0, _PANEL * _FINER)
     deformer = GeometricDeformer(model)
-    geometry = deformer.deform(FacePose.of(**SURPRISED))
+    geometry = deformer.at(FacePose.of(**SURPRISED))
     rest, moved = model.vertices.astype(np.float64), geometry.vertices.astype(np.float64)
     moved += (_SEEN - 1.0) * geometry.wrinkles[:, None] * geometry.smooth_normals
     unit, (x, y, z) = model.landmarks.eye_separation, map(float, model.landmarks["glabella"])

@@ -64,4 +64,5 @@ def scalp_cap(model: HeadModel, line: Hairline, look: HairLook) -> Anchored:
     edge = np.clip((depth + 0.001) / _STRIP[look.style], 0, 1)
     triangles = triangles[edge[triangles].max(1) > 0]
     material = np.column_stack([edge, np.clip(1.3 * light[:, 0], 0, 1), ones, ones])
-    return Anchored(lifted, vertex_normals(lifted, triangles), triangles, anchors, material.astype(np.float32))
+    normals = vertex_normals(lifted, triangles).astype(np.float32)
+    return Anchored(lifted, normals, triangles, anchors, material.astype(np.float32))

@@ -22,7 +22,7 @@ class RigidPart:
         self.program = program
         fields = {
             "place": vertices,
-            "facing": vertex_normals(vertices, triangles),
+            "facing": vertex_normals(vertices, triangles).astype(np.float32),
             "material": material,
             "detail": detail,
         }

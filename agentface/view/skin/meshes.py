@@ -8,7 +8,6 @@ import numpy as np
 import numpy.typing as npt
 
 from agentface.conventions import Floats, Indices
-from agentface.deform.finish.neck import Neck
 from agentface.deform.geometry import FaceGeometry
 from agentface.errors import InvalidValueError
 from agentface.head.model import HeadModel
@@ -28,7 +27,7 @@ class SkinFields:
     """
 
     def __init__(self, context: Any, model: HeadModel, lips: FineLips) -> None:
-        self.count, self._lips, self._neck = len(model.vertices), lips, Neck(model)
+        self.count, self._lips = len(model.vertices), lips
         rows = -(-(self.count + lips.count) // _COLUMNS)
         self._texels = np.zeros((2, rows * _COLUMNS, 4), np.float32)
         self.texture = context.texture((_COLUMNS, 2 * rows), 4, dtype="f4")
@@ -45,7 +44,6 @@ class SkinFields:
         self._texels[0, : self.count, :3] = geometry.vertices
         self._texels[0, : self.count, 3] = geometry.wrinkles
         self._texels[1, : self.count, :3] = geometry.smooth_normals
-        self._neck.hold(geometry.head, *self._texels[:, : self.count, :3])
         self.texture.write(self._texels)
 
     def update_lips(self, geometry: FaceGeometry) -> None:

@@ -116,5 +116,5 @@ def test_usage_errors(options, quick):
 
 def test_unknown_faces_and_deformers(quick):
     assert "known: amber, onyx" in call("nobody", code=1).stderr
-    assert "no layered tissue" in call("amber", "--deformer", "tissue", code=1).stderr
+    assert "known: geometric" in call("amber", "--deformer", "jelly", code=1).stderr
     assert not quick

@@ -7,7 +7,7 @@ import pytest
 from PIL import Image
 
 from agentface.head.trains import heights
-from agentface.mesh.normal_field import corner_normals
+from agentface.mesh.normals import corner_normals
 from agentface.studies.figures.gouraud import smooth_picture
 from agentface.studies.figures.mesh_view import SKIN, MeshView
 from agentface.studies.figures.wrinkles import TRAIN, figures, skin_strip

@@ -1,0 +1,80 @@
+"""What every deformer's skin gets last, in its order: normals, wrinkles, eyes, teeth, the head's turn, the neck."""
+
+from __future__ import annotations
+
+from enum import IntEnum
+from typing import NamedTuple
+
+import numpy as np
+
+from agentface.conventions import Floats, Indices
+from agentface.deform.eyes import eyeballs
+from agentface.deform.eyes.eyeballs import EyesTables
+from agentface.deform.finish import head_turn, neck, teeth, wrinkle_normals, wrinkles
+from agentface.deform.finish.head_turn import HeadTables
+from agentface.deform.finish.neck import NeckTables
+from agentface.deform.finish.teeth import TeethTables
+from agentface.deform.finish.wrinkle_normals import ShadingTables
+from agentface.deform.finish.wrinkles import WrinkleTables
+from agentface.deform.geometry import FaceArrays
+from agentface.head.model import HeadModel
+from agentface.mesh import normals
+
+
+class FinishStage(IntEnum):
+    """The stages in their order."""
+
+    SMOOTH_NORMALS = 0
+    WRINKLES = 1
+    NORMALS = 2
+    EYES = 3
+    TEETH = 4
+    HEAD = 5
+    NECK = 6
+
+
+class FinishTables(NamedTuple):
+    """What the last stages need of a face: the ``(T, 3)`` int32 triangles of its skin, and a record a stage."""
+
+    triangles: Indices
+    wrinkles: WrinkleTables
+    shading: ShadingTables
+    eyes: EyesTables
+    teeth: TeethTables
+    head: HeadTables
+    neck: NeckTables
+
+
+def prepare(model: HeadModel) -> FinishTables:
+    """The tables of a face."""
+    of_wrinkles = wrinkles.prepare(model)
+    return FinishTables(
+        triangles=np.ascontiguousarray(model.triangles, np.int32),
+        wrinkles=of_wrinkles,
+        shading=wrinkle_normals.prepare(model, of_wrinkles),
+        eyes=eyeballs.prepare(model),
+        teeth=teeth.prepare(model),
+        head=head_turn.prepare(model),
+        neck=neck.prepare(model),
+    )
+
+
+def finish(first: int, last: int, tables: FinishTables, values: Floats, face: FaceArrays) -> None:
+    """The stages ``first`` to ``last`` on one face whose ``vertices`` are the deformed skin, at the pose ``values``."""
+    for stage in range(first, last + 1):
+        if stage == FinishStage.SMOOTH_NORMALS:
+            normals.write_normals(face.vertices, tables.triangles, face.smooth_normals)
+        elif stage == FinishStage.WRINKLES:
+            wrinkles.levels(tables.wrinkles, values, face.wrinkle_levels)
+            wrinkles.heights(tables.wrinkles, values, face.wrinkles)
+            wrinkles.raise_vertices(tables.wrinkles, face.wrinkles, face.smooth_normals, face.vertices)
+        elif stage == FinishStage.NORMALS:
+            wrinkle_normals.apply(tables.shading, face.wrinkles, face.vertices, face.smooth_normals, face.normals)
+        elif stage == FinishStage.EYES:
+            eyeballs.apply(tables.eyes, values, face.eye_rotations)
+        elif stage == FinishStage.TEETH:
+            teeth.apply(tables.teeth, values, face.jaw)
+        elif stage == FinishStage.HEAD:
+            head_turn.apply(tables.head, values, face.head)
+        elif stage == FinishStage.NECK:
+            neck.apply(tables.neck, face.head, face.vertices, face.normals, face.smooth_normals)

@@ -1,0 +1,118 @@
+"""Compiled loops: numba's ``njit`` with a cache that no edit makes stale and that no disk can break.
+
+numba's own cache looks at the file of a function and at nothing that the function reads from other files. Here the
+folder of the cache bears a hash of the package's sources instead, in the user's cache folder. Where nothing can be
+written there, kernels are compiled anew in every process, and a log says so once.
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+import tempfile
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from functools import cache
+from hashlib import blake2b
+from pathlib import Path
+from types import FunctionType
+from typing import Any, TypeVar
+
+from agentface.resources import cache_folder, keep_newest, tell_no_cache
+
+_F = TypeVar("_F", bound=Callable[..., Any])
+_PACKAGE = Path(__file__).parent
+_ROOMS = ("deform", "emotion", "mesh", "tissue")
+_KEPT = 8
+"""Versions of the sources whose kernels are kept."""
+
+
+def can_compile() -> bool:
+    """Whether numba may compile: a user can forbid it with ``NUMBA_DISABLE_JIT=1``, and gets the numpy forms."""
+    if "numba" in sys.modules:
+        return not sys.modules["numba"].config.DISABLE_JIT
+    return os.environ.get("NUMBA_DISABLE_JIT", "0") in ("", "0")
+
+
+def kernel(**options: Any) -> Callable[[_F], _F]:
+    """``numba.njit(**options)`` for a decorator's use; the machine code outlives the process where it can."""
+    from numba import njit
+
+    def compile_later(function: _F) -> _F:
+        folder = _folder()
+        with _cached_in(folder):
+            compiled = njit(cache=folder is not None, nogil=True, **options)(function)
+        return _careful(compiled) if folder is not None else compiled
+
+    return compile_later
+
+
+def compiled_twin(function: Callable[..., Any], module: dict[str, Any], **options: Any) -> Any:
+    """The kernel that runs the code of ``function`` with the names of ``module``, a ``globals()``, in place of its own.
+
+    So an order of calls is written once: the names that stand for numpy forms where it is written stand for their
+    compiled twins in ``module``.
+    """
+    twin = FunctionType(function.__code__, module, function.__name__, function.__defaults__)
+    twin.__module__ = module["__name__"]
+    return kernel(**options)(twin)
+
+
+@cache
+def _folder() -> Path | None:
+    """Where this version's kernels are kept, or None where nothing can be."""
+    from numba import __version__ as numba_version
+
+    root = cache_folder()
+    if root is None or not can_compile():
+        return None
+    digest = blake2b(numba_version.encode(), digest_size=8)
+    for source in _sources():
+        digest.update(source.read_bytes())
+    kernels = root / "kernels"
+    folder = kernels / digest.hexdigest()
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        with tempfile.TemporaryFile(dir=folder) as probe:
+            probe.write(bytes(4096))
+        os.utime(folder)
+        keep_newest(kernels, _KEPT)
+    except OSError as error:
+        tell_no_cache(folder, error)
+        return None
+    return folder
+
+
+def _sources() -> Iterator[Path]:
+    yield from sorted(_PACKAGE.glob("*.py"))
+    for room in _ROOMS:
+        yield from sorted((_PACKAGE / room).rglob("*.py"))
+
+
+@contextmanager
+def _cached_in(folder: Path | None) -> Iterator[None]:
+    import numba
+
+    config: Any = numba.config
+    before = config.CACHE_DIR
+    try:
+        if folder is not None:
+            config.CACHE_DIR = str(folder)
+        yield
+    finally:
+        config.CACHE_DIR = before
+
+
+def _careful(compiled: Any) -> Any:
+    """``compiled``, which goes on when its machine code cannot be kept: numba itself raises on a full disk."""
+    store = compiled._cache  # noqa: SLF001  # numba has no other way to reach it
+    save = store.save_overload
+
+    def save_if_possible(signature: Any, data: Any) -> None:
+        try:
+            save(signature, data)
+        except OSError as error:
+            tell_no_cache(Path(store.cache_path), error)
+
+    store.save_overload = save_if_possible
+    return compiled

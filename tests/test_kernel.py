@@ -1,0 +1,104 @@
+"""The cache of compiled kernels: it may be missing, full or of another version, and the face works all the same."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from agentface import kernel, resources
+
+STEP = """
+import sys
+from agentface import Face
+face = Face()
+face.set_emotion("happiness", 1.0, fade=0)
+face.step(0.1)
+print("moved", float(abs(face.geometry.vertices - face.model.vertices).max()) > 0.001, "numba" in sys.modules)
+"""
+
+
+def run(program: str, **environment: str) -> subprocess.CompletedProcess[str]:
+    command = [sys.executable, "-W", "error", "-c", program]
+    return subprocess.run(
+        command, check=False, capture_output=True, text=True, env=os.environ | environment, timeout=280
+    )
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("variable", ["HOME", "XDG_CACHE_HOME"])
+def test_a_face_works_where_nothing_can_be_kept_and_says_so_once(tmp_path, variable):
+    place = tmp_path / "file"
+    place.write_text("")
+    done = run(STEP, **{"XDG_CACHE_HOME": ""} | {variable: str(place)})  # no folder can be made in a file, by nobody
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.startswith("moved True")
+    assert done.stderr.count("nothing can be kept between runs") == 1
+    assert len(done.stderr.splitlines()) == 1
+
+
+def test_numba_may_be_forbidden_to_compile():
+    done = run(STEP, NUMBA_DISABLE_JIT="1")
+    assert (done.stdout.strip(), done.stderr) == ("moved True False", "")
+
+
+def test_a_disk_that_fills_loses_the_cache_alone(tmp_path, monkeypatch, caplog):
+    monkeypatch.setattr(kernel, "_folder", lambda: tmp_path)
+    monkeypatch.setattr(resources, "_TOLD", [])
+    resources._tell_once.cache_clear()
+    twice = kernel.kernel()(_twice)
+
+    def full(*_: object) -> None:
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr("numba.core.caching.IndexDataCacheFile.save", full)
+    assert twice(4) == 8
+    assert twice(0.5) == 1.0
+    assert [record.message.count("No space left") for record in caplog.records] == [1]
+
+
+def test_kernels_are_kept_by_the_sources_they_are_made_of(tmp_path, monkeypatch):
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
+    sources = [tmp_path / "one.py", tmp_path / "two.py"]
+    for source in sources:
+        source.write_text("STEP = 0.2")
+    monkeypatch.setattr(kernel, "_sources", lambda: iter(sources))
+    before = kernel._folder.__wrapped__()
+    assert before == kernel._folder.__wrapped__()
+    sources[1].write_text("STEP = 0.1")
+    after = kernel._folder.__wrapped__()
+    assert before != after
+    assert before.is_dir()
+    assert after.is_dir()
+
+
+def test_every_source_that_a_kernel_reads_counts():
+    sources = {path.relative_to(Path(kernel.__file__).parent).as_posix() for path in kernel._sources()}
+    assert {"parameters.py", "deform/mouth/contact.py", "emotion/sets.py", "mesh/normals_compiled.py"} <= sources
+
+
+def test_only_the_newest_are_kept(tmp_path):
+    for age in range(5):
+        entry = tmp_path / f"{age}"
+        if age % 2:
+            entry.mkdir()
+        else:
+            entry.write_text("")
+        os.utime(entry, (1000 - age, 1000 - age))
+    resources.keep_newest(tmp_path, 3)
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["0", "1", "2"]
+
+
+def test_a_user_s_own_cache_folder_stays_the_user_s():
+    import numba
+
+    before = numba.config.CACHE_DIR
+    kernel.kernel()(_twice)
+    assert before == numba.config.CACHE_DIR
+
+
+def _twice(number: float) -> float:
+    return number + number
