@@ -23,7 +23,7 @@ _Where = tuple[str | int, ...]
 class Table(BaseModel):
     """The base of all models of data files: unknown keys are faults, values are not coerced, objects are frozen."""
 
-    model_config = ConfigDict(extra="forbid", frozen=True, strict=True, allow_inf_nan=False)
+    model_config = ConfigDict(extra="forbid", frozen=True, strict=True, allow_inf_nan=False, defer_build=True)
 
 
 Model = TypeVar("Model", bound=BaseModel)

@@ -1,7 +1,7 @@
 """Compiled loops: numba's ``njit`` with a cache that no edit makes stale and that no disk can break.
 
 numba's own cache looks at the file of a function and at nothing that the function reads from other files. Here the
-folder of the cache bears a hash of the package's sources instead, in the user's cache folder. Where nothing can be
+folder of the cache bears a stamp of the package's sources instead, in the user's cache folder. Where nothing can be
 written there, kernels are compiled anew in every process, and a log says so once.
 """
 
@@ -9,22 +9,18 @@ from __future__ import annotations
 
 import os
 import sys
-import tempfile
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from functools import cache
-from hashlib import blake2b
 from pathlib import Path
 from types import FunctionType
 from typing import Any, TypeVar
 
-from agentface.resources import cache_folder, keep_newest, tell_no_cache
+from agentface.cache import tell_no_cache, version_folder
 
 _F = TypeVar("_F", bound=Callable[..., Any])
 _PACKAGE = Path(__file__).parent
 _ROOMS = ("deform", "emotion", "mesh", "tissue")
-_KEPT = 8
-"""Versions of the sources whose kernels are kept."""
 
 
 def can_compile() -> bool:
@@ -63,24 +59,7 @@ def _folder() -> Path | None:
     """Where this version's kernels are kept, or None where nothing can be."""
     from numba import __version__ as numba_version
 
-    root = cache_folder()
-    if root is None or not can_compile():
-        return None
-    digest = blake2b(numba_version.encode(), digest_size=8)
-    for source in _sources():
-        digest.update(source.read_bytes())
-    kernels = root / "kernels"
-    folder = kernels / digest.hexdigest()
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-        with tempfile.TemporaryFile(dir=folder) as probe:
-            probe.write(bytes(4096))
-        os.utime(folder)
-        keep_newest(kernels, _KEPT)
-    except OSError as error:
-        tell_no_cache(folder, error)
-        return None
-    return folder
+    return version_folder("kernels", _sources(), numba_version) if can_compile() else None
 
 
 def _sources() -> Iterator[Path]:

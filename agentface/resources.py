@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from functools import cache
 from pathlib import Path
 
 from agentface.errors import UnknownNameError
@@ -42,45 +41,3 @@ def face_folder(face: str | Path) -> Path:
 def rules_file(name: str) -> Path:
     """A file of ``rules/``, for example ``rules_file("emotions.yaml")``."""
     return data_folder("rules") / name
-
-
-def cache_folder() -> Path | None:
-    """Where downloaded and computed files may be kept between runs; None where the user has no home."""
-    import os
-
-    try:
-        return Path(os.environ.get("XDG_CACHE_HOME") or "~/.cache").expanduser() / "agentface"
-    except RuntimeError:  # no HOME, and no such user
-        tell_no_cache(Path("~/.cache"), OSError("no home folder"))
-        return None
-
-
-def keep_newest(folder: Path, count: int) -> None:
-    """Remove all but the ``count`` entries of ``folder`` that were used last; others may be removing them, too."""
-    import shutil
-
-    entries = sorted(folder.iterdir(), key=lambda entry: entry.stat().st_mtime, reverse=True)
-    for entry in entries[count:]:
-        if entry.is_dir():
-            shutil.rmtree(entry, ignore_errors=True)
-        else:
-            entry.unlink(missing_ok=True)
-
-
-@cache
-def _tell_once() -> None:
-    import logging
-
-    logging.getLogger("agentface").warning(
-        "nothing can be kept between runs (%s): every start computes anew; set XDG_CACHE_HOME to a folder to write in",
-        _TOLD[0],
-    )
-
-
-_TOLD: list[str] = []
-
-
-def tell_no_cache(place: Path, error: OSError) -> None:
-    """Log, once a process, that ``place`` cannot hold what was computed."""
-    _TOLD.append(f"{place}: {error.strerror or error}")
-    _tell_once()

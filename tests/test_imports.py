@@ -15,7 +15,7 @@ PACKAGE = Path(agentface.__file__).parent
 
 LAYERS = (
     ("errors",),
-    ("conventions", "resources", "config"),
+    ("conventions", "resources", "config", "cache"),
     ("parameters", "clock", "kernel"),
     ("mesh",),
     ("head",),

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from agentface import kernel, resources
+from agentface import cache, kernel
 
 STEP = """
 import sys
@@ -47,8 +47,7 @@ def test_numba_may_be_forbidden_to_compile():
 
 def test_a_disk_that_fills_loses_the_cache_alone(tmp_path, monkeypatch, caplog):
     monkeypatch.setattr(kernel, "_folder", lambda: tmp_path)
-    monkeypatch.setattr(resources, "_TOLD", [])
-    resources._tell_once.cache_clear()
+    monkeypatch.setattr(cache, "_told", set())
     twice = kernel.kernel()(_twice)
 
     def full(*_: object) -> None:
@@ -78,18 +77,6 @@ def test_kernels_are_kept_by_the_sources_they_are_made_of(tmp_path, monkeypatch)
 def test_every_source_that_a_kernel_reads_counts():
     sources = {path.relative_to(Path(kernel.__file__).parent).as_posix() for path in kernel._sources()}
     assert {"parameters.py", "deform/mouth/contact.py", "emotion/sets.py", "mesh/normals_compiled.py"} <= sources
-
-
-def test_only_the_newest_are_kept(tmp_path):
-    for age in range(5):
-        entry = tmp_path / f"{age}"
-        if age % 2:
-            entry.mkdir()
-        else:
-            entry.write_text("")
-        os.utime(entry, (1000 - age, 1000 - age))
-    resources.keep_newest(tmp_path, 3)
-    assert sorted(path.name for path in tmp_path.iterdir()) == ["0", "1", "2"]
 
 
 def test_a_user_s_own_cache_folder_stays_the_user_s():

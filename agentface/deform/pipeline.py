@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from functools import partial
+from functools import cached_property, partial
 
 from agentface.conventions import Floats
 from agentface.deform import order, tables
@@ -40,7 +40,6 @@ class GeometricDeformer:
         self._tables = tables.of(model)
         skin = self._tables.skin
         self._points = skin.rest.copy()
-        self._combiner = Combiner(skin.rest, tables.muscles_of(model, skin.lips), combine, compiled=compiled)
         self._deform, self._finish = order.deform, last_part.finish
         self.frames: Frames = self._by_parts
         if compiled:
@@ -51,6 +50,12 @@ class GeometricDeformer:
                 self.frames = partial(order_compiled.frames, self._tables, order_compiled.new_scratch(self._tables))
         self._rows = self._new_rows()
         self._arrays, self._shown = self._rows.arrays(), self._rows[0]
+
+    @cached_property
+    def _combiner(self) -> Combiner:
+        skin = self._tables.skin
+        muscles = tables.muscles_of(self._model, skin.lips)
+        return Combiner(skin.rest, muscles, self._method, compiled=self._compiled)
 
     def reset(self, pose: FacePose) -> None:
         """Nothing: this face has no memory."""

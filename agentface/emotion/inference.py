@@ -7,6 +7,7 @@ from functools import cache
 
 import numpy as np
 
+from agentface.cache import prepared, stamp_of
 from agentface.conventions import Doubles
 from agentface.emotion.explanation import Explanation, explain
 from agentface.emotion.rules import RuleBase
@@ -15,6 +16,7 @@ from agentface.emotion.sets import INTENSITY_SETS, SETS
 from agentface.emotion.state import EMOTIONS, EmotionState
 from agentface.kernel import can_compile
 from agentface.parameters import COUNT, MUSCLES, FacePose, indices_of
+from agentface.resources import data_folder
 
 State = EmotionState | Mapping[str, float]
 
@@ -70,4 +72,5 @@ class Inference:
 @cache
 def default_inference(*, compiled: bool = True) -> Inference:
     """The inference over the rules that come with agentface, made once; ``compiled`` as for :class:`Inference`."""
-    return Inference(RuleBase.load(), compiled=compiled)
+    rules = data_folder("rules")
+    return Inference(prepared(stamp_of(sorted(rules.iterdir())), "rules", RuleBase.load), compiled=compiled)

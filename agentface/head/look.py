@@ -7,6 +7,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
+from agentface.cache import prepared, stamp_of
 from agentface.config import Document, Table
 from agentface.errors import DataError, UnknownNameError
 from agentface.head.model import HeadModel
@@ -115,6 +116,13 @@ def _looks(model: HeadModel) -> Path:
 
 def read_look(path: Path) -> Look:
     """The look in a file; raises DataError with every fault of the file and of the picture it wears as skin."""
+    if not path.is_file():
+        return _read(path)
+    look = prepared(stamp_of([path.resolve()]), "look", lambda: _read(path))
+    return look if look.skin.texture is None else _read(path)  # a picture may have changed beside its look
+
+
+def _read(path: Path) -> Look:
     document = Document(path)
     look = document.collect(Look)
     if look is not None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
 from pathlib import Path
@@ -11,9 +12,10 @@ from typing import Annotated, Any, TypeVar
 import numpy as np
 from pydantic import AfterValidator, Field
 
+from agentface.cache import prepared, stamp_of
 from agentface.config import Table, load
 from agentface.conventions import SIDES, Floats, Indices, check_fraction
-from agentface.errors import DataError, Fault
+from agentface.errors import DataError, Fault, InvalidValueError
 from agentface.head import asymmetry as own
 from agentface.head.landmarks import Landmarks, load_landmarks
 from agentface.head.muscle_set import MuscleSet
@@ -29,6 +31,7 @@ from agentface.resources import DEFAULT_FACE, face_folder
 
 _Point = Annotated[list[Annotated[float, Field(ge=-0.3, le=0.3)]], Field(min_length=3, max_length=3)]
 _T = TypeVar("_T")
+_STAMP = "_stamp"
 _KEPT = 8
 """Faces that are kept once they are read."""
 PARTS = ("teeth_upper", "teeth_lower", "tongue", "eye_l", "eye_r")
@@ -162,10 +165,14 @@ class HeadModel:
         return unwrap_cover(self.vertices, unwrap_centre(self.landmarks))
 
     def derived(self, name: str, make: Callable[[HeadModel], _T]) -> _T:
-        """What ``make`` makes of this model, made once and kept with it under ``name``."""
+        """What ``make`` makes of this model, made once and kept under ``name``: with it, and for the next run.
+
+        ``name`` also says everything else that it is made of.
+        """
         kept: dict[str, Any] = self.__dict__.setdefault("_derived", {})
         if name not in kept:
-            kept[name] = make(self)
+            stamp = self.__dict__.get(_STAMP)
+            kept[name] = make(self) if stamp is None else prepared(stamp, name, lambda: make(self))
         made: _T = kept[name]
         return made
 
@@ -189,14 +196,19 @@ def load_model(
     folder = face_folder(face)
     if muscles is not None:
         return _read(folder, muscles, asymmetry)
-    files = sorted(path for path in folder.iterdir() if path.is_file())
-    stamps = tuple((path.name, path.stat().st_mtime_ns, path.stat().st_size) for path in files)
-    return _kept(folder.resolve(), stamps, asymmetry)
+    return _kept(folder.resolve(), stamp_of(sorted(folder.iterdir()), str(asymmetry)), asymmetry)
 
 
 @lru_cache(maxsize=_KEPT)
-def _kept(folder: Path, stamps: tuple[tuple[str, int, int], ...], asymmetry: float) -> HeadModel:
-    return _read(folder, None, asymmetry)
+def _kept(folder: Path, stamp: str, asymmetry: float) -> HeadModel:
+    def read() -> HeadModel:
+        model = _read(folder, None, asymmetry)
+        model.__dict__[_STAMP] = stamp  # what replace() makes of it is of no file
+        with suppress(InvalidValueError):  # what cannot be placed is told when it is asked for
+            _ = model.normals, model.muscles, model.trains
+        return model
+
+    return prepared(stamp, "model", read)
 
 
 def _read(folder: Path, muscles: MusclesFile | None, asymmetry: float) -> HeadModel:

@@ -43,6 +43,14 @@ class RowsRoundMouth(Table, Generic[_Number]):
         return _blend(turn[:, None], upper, lower, corner)
 
 
+class TurnsRoundMouth(RowsRoundMouth[_Turn]):
+    """Degrees."""
+
+
+class WaysRoundMouth(RowsRoundMouth[_Way]):
+    """Eye separations."""
+
+
 class MouthEllipse(Table):
     """The ellipse to which the control points are drawn.
 
@@ -69,8 +77,8 @@ class LipContraction(Table):
     """
 
     ellipse: MouthEllipse
-    rotation_deg: RowsRoundMouth[_Turn]
-    extrusion: RowsRoundMouth[_Way]
+    rotation_deg: TurnsRoundMouth
+    extrusion: WaysRoundMouth
 
 
 class OrbicularisOrisTable(Table):

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from agentface.cache import stamp_of
 from agentface.conventions import SIDES, Bytes, Floats
 from agentface.deform.geometry import FaceGeometry
 from agentface.head.look import Look, load_look
@@ -36,6 +37,7 @@ from agentface.view.skin.wrinkle_atlas import WrinkleAtlas
 
 _SEED = 20
 _LIP_CUTS = 2
+_SOFTNESSES = 0.35, 0.1  # of brows and lashes
 _FRAME_BYTES = 3 * 64 + 11 * 16
 _IRIS_RADIUS = 0.405  # in radii of the eyeball
 _LONGEST_EDGE = 16.0  # pixels; longer edges of fine skin are cut and curved
@@ -68,7 +70,7 @@ class Renderer:
         self._picture = skin_texture(self.context, self.look)
         self._programs = Programs(self.context, textured=self._picture is not None)
         self._screens = {name: self.context.vertex_array(self._programs[name], []) for name in ("background", "copy")}
-        lips = FineLips(model, _LIP_CUTS)
+        lips = model.derived("view.fine_lips", lambda face: FineLips(face, _LIP_CUTS))
         self._fields = SkinFields(self.context, model, lips)
         self._wrinkles = WrinkleAtlas(self.context, model, unit(self.look.lights.key.towards), rng)
         normals, hair = model.normals, self.look.hair
@@ -82,9 +84,13 @@ class Renderer:
         self._linings = [
             AnchoredArray(self.context, self._programs["lining"], mesh, model.vertices) for mesh in eye_linings(model)
         ]
+        grown = model.derived(
+            f"view.brows.{stamp_of((), repr(hair))}",
+            lambda face: (brow_hairs(face, normals, hair, rng), lash_hairs(face, normals, hair, rng)),
+        )
         self._hairs = [
-            HairArray(self.context, self._programs["ribbon"], brow_hairs(model, normals, hair, rng), 0.35),
-            HairArray(self.context, self._programs["ribbon"], lash_hairs(model, normals, hair, rng), 0.1),
+            HairArray(self.context, self._programs["ribbon"], hairs, softness)
+            for hairs, softness in zip(grown, _SOFTNESSES, strict=True)
         ]
         front = float(model.landmarks["upper_lip_middle"][2])
         self._programs.wear(self.look)

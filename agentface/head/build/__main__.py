@@ -9,6 +9,7 @@ import click
 import numpy as np
 import yaml
 
+from agentface.cache import cache_folder
 from agentface.config import load
 from agentface.head.build.head import METRES, Head, HeadTopology, build_head, hinge
 from agentface.head.build.identity import Recipe, person
@@ -16,7 +17,7 @@ from agentface.head.build.occlusion import ambient_light
 from agentface.head.build.parts import PartsFile
 from agentface.head.build.source import WHEEL, BaseMesh, fetch
 from agentface.mesh.glb import write_glb
-from agentface.resources import cache_folder, data_folder
+from agentface.resources import data_folder
 
 _CREDIT = "CC0 1.0: MakeHuman base mesh hm08 and targets, Face Units by Mika Suominen; changed for agentface"
 

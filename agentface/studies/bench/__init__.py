@@ -17,6 +17,7 @@ BENCHES: dict[str, str] = {
     "frame": "the whole face, beside a blendshape product with normals, and how it grows with the mesh",
     "crowd": "many faces in one call, on one thread and on two",
     "render": "a picture in both qualities and two sizes, stage by stage, beside clearing and reading one back",
+    "start": "a picture from a command, and first faces, beside importing the libraries",
     "texture": "a picture worn as skin: how finely it lies, how emotions strain it, what drawing it costs",
 }
 """The benchmarks and what they compare; each is a module of this package with ``run() -> dict``."""
@@ -29,7 +30,9 @@ def run(name: str, face: str | Path = DEFAULT_FACE) -> dict[str, Any]:
     if name not in BENCHES:
         raise UnknownNameError("benchmark", name, tuple(BENCHES))
     bench = import_module(f"agentface.studies.bench.{name}").run
-    figures: dict[str, Any] = (
-        bench(model=load_model(face, asymmetry=0.0)) if "model" in signature(bench).parameters else bench()
-    )
+    parameters = signature(bench).parameters
+    if "model" in parameters:
+        figures: dict[str, Any] = bench(model=load_model(face, asymmetry=0.0))
+    else:
+        figures = bench(face=face) if "face" in parameters else bench()
     return figures

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Any
+from collections.abc import Callable
+from typing import Any, TypeVar
 
 import numpy as np
 
+from agentface.cache import stamp_of
 from agentface.conventions import Doubles, Floats
 from agentface.head.look import HairLook
 from agentface.head.model import HeadModel
@@ -17,9 +19,10 @@ from agentface.view.hair.groom import grow
 from agentface.view.hair.hairline import Hairline
 from agentface.view.hair.hull import Hull
 from agentface.view.hair.sheets import Sheet, SheetArray, edge_shade, flyaways, parting_line, sheets
-from agentface.view.hair.strands import StrandArray
+from agentface.view.hair.strands import StrandArray, Strands
 from agentface.view.hair.styles import PARTED, STYLES
 
+_T = TypeVar("_T")
 _SEED = 20
 _STREAKS = {"fast": 6.0, "portrait": 7.0}
 _NARROWEST = {"fast": 0.9, "portrait": 0.5}
@@ -45,10 +48,8 @@ class HeadHair:
         self._sheets: SheetArray | None = None
         self._grown: list[Sheet] = []
         if look.style in PARTED:
-            hull = Hull(model, ears=True)
-            line = parting_line(model, look, hull)
+            line, self._grown = self._kept("sheets", self._grow_sheets)
             cap["parting"].value = tuple(line[[0, 0, -1, -1], [0, 2, 0, 2]])
-            self._grown = sheets(model, look, hull, np.random.default_rng(_SEED))
             self._sheets = SheetArray(context, sheet, self._grown, model, self._centre)
             sheet["hair_colour"].value = tuple(look.colour)
         programs.set({"gloss": _GLOSS[look.style]})
@@ -85,11 +86,20 @@ class HeadHair:
 
     def _strands_for(self, quality: str) -> StrandArray:
         if quality not in self._strands:
-            model, look, rng = self._model, self._look, np.random.default_rng(_SEED)
-            if self._grown:
-                growth = flyaways(self._grown, STYLES[look.style].amounts[quality], look, rng)
-                strands = growth.strands(model)
-            else:
-                strands = grow(model, model.normals, look, quality, rng)
-            self._strands[quality] = StrandArray(self._context, self._program, strands, model, self._centre)
+            strands = self._kept(f"strands.{quality}", lambda: self._grow_strands(quality))
+            self._strands[quality] = StrandArray(self._context, self._program, strands, self._model, self._centre)
         return self._strands[quality]
+
+    def _kept(self, name: str, grow_it: Callable[[], _T]) -> _T:
+        return self._model.derived(f"view.{name}.{stamp_of((), repr(self._look))}", lambda _: grow_it())
+
+    def _grow_sheets(self) -> tuple[Doubles, list[Sheet]]:
+        hull = Hull(self._model, ears=True)
+        line = parting_line(self._model, self._look, hull)
+        return line, sheets(self._model, self._look, hull, np.random.default_rng(_SEED))
+
+    def _grow_strands(self, quality: str) -> Strands:
+        model, look, rng = self._model, self._look, np.random.default_rng(_SEED)
+        if self._grown:
+            return flyaways(self._grown, STYLES[look.style].amounts[quality], look, rng).strands(model)
+        return grow(model, model.normals, look, quality, rng)

@@ -1,10 +1,4 @@
-"""The lips of a portrait: the skin round the mouth cut as finely as the camera is near, on the lips' B-spline surface.
-
-To hook it in: ``lips = FineLips(model, per_cell)``; give ``SkinFields`` room for ``lips.count`` more vertices; in the
-fine ``Skin`` take ``lips.mesh(refine(triangles, V))`` for the mesh and ``lips.extended(field)`` for every field; each
-frame write ``lips.update(vertices, normals)`` behind the skin's own vertices and normals. The shaders stay as they are:
-a fine vertex is an edge with both ends at itself.
-"""
+"""The lips of a portrait: the skin round the mouth cut finely, on the lips' B-spline surface."""
 
 from __future__ import annotations
 
@@ -12,9 +6,9 @@ import numpy as np
 import numpy.typing as npt
 
 from agentface.conventions import Floats, Indices
-from agentface.deform.mouth import lips
 from agentface.deform.mouth.lip_mesh import patch_mesh
 from agentface.deform.mouth.lip_surface import COLUMNS, ROWS
+from agentface.deform.tables import of
 from agentface.head.model import HeadModel
 from agentface.mesh.refine import Refined
 
@@ -36,7 +30,7 @@ class FineLips:
     """
 
     def __init__(self, model: HeadModel, per_cell: int = 4) -> None:
-        tables = lips.prepare(model)
+        tables = of(model).skin.lips
         fine = patch_mesh(tables, 2 * max(1, round(per_cell / 2)))
         self._first = len(model.vertices)
         self._patch, self._rings, self._fine = tables.patch, len(tables.along), fine

@@ -34,7 +34,7 @@ class WrinkleAtlas:
             float(at["menton"][1]) - _BELOW * at.eye_separation,
             float(at["hairline_middle"][1]) + _ABOVE * at.eye_separation,
         )
-        self.patches = patches(context, model, self.height)
+        self.patches = model.derived("view.wrinkle_patches", lambda face: patches(context, face, self.height))
         self._reliefs = [patch.texels(towards_key) for patch in self.patches]
         self.heights = np.zeros((SIDE, SIDE), np.float32)
         self._smooth = np.full((SIDE, SIDE, 4), _EVEN, np.int16)
