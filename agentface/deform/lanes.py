@@ -1,8 +1,4 @@
 """How many vertices a kernel takes at once."""
 
-PART = 8
-"""Lanes of a register."""
-PARTS = 2
-"""Two registers, because the chain of operations of one alone leaves the processor idle."""
-LANES = PART * PARTS
-"""Vertices a block."""
+LANES = 16
+"""Vertices a block: a register of AVX-512; where registers are narrower, LLVM takes as many as it needs."""

@@ -1,9 +1,8 @@
 """Vectors of single precision numbers for compiled kernels: arithmetic on LANES lanes, held in registers.
 
 numba turns a loop into vector instructions only where it can prove much, and keeps sums in memory between two loops.
-A value made by :func:`load`, :func:`tile` or :func:`splat` is LANES numbers that ``+ - *`` take lane by lane. It is
-made of parts of eight, which is a register of AVX; LLVM splits them where registers are narrower. An index counts
-the elements of an array in C order, whatever its shape, and is not checked.
+A value made by :func:`load` or :func:`splat` is LANES numbers that ``+ - *`` take lane by lane. An index counts the
+elements of an array in C order, whatever its shape, and is not checked.
 """
 
 # mypy: disable-error-code="untyped-decorator, no-untyped-call, import-untyped, attr-defined"
@@ -19,10 +18,9 @@ from numba import extending, types
 from numba.core import cgutils
 from numba.core.datamodel import PrimitiveModel, register_default
 
-from agentface.deform.lanes import LANES, PART, PARTS
+from agentface.deform.lanes import LANES
 
-_LANES = ir.VectorType(ir.FloatType(), PART)
-_VECTOR = ir.ArrayType(_LANES, PARTS)
+_VECTOR = ir.VectorType(ir.FloatType(), LANES)
 _I32 = ir.IntType(32)
 # numba's annotations keep the compiler's own arguments in a function's signature.
 _intrinsic: Any = extending.intrinsic
@@ -44,35 +42,20 @@ class _VectorModel(PrimitiveModel):
 _TYPE: Any = Vector()
 
 
-def _each(builder: Any, make: Callable[..., Any], *vectors: Any) -> Any:
-    """A vector whose parts ``make`` makes of the parts of others."""
-    result = ir.Constant(_VECTOR, ir.Undefined)
-    for part in range(PARTS):
-        result = builder.insert_value(result, make(*(builder.extract_value(v, part) for v in vectors)), part)
-    return result
-
-
 def _address(context: Any, builder: Any, signature: Any, args: Any) -> Any:
     array = context.make_array(signature.args[0])(context, builder, args[0])
     index = context.cast(builder, args[1], signature.args[1], types.intp)
     return builder.gep(array.data, [index])
 
 
-def _address_of(part: int, builder: Any, start: Any) -> Any:
-    return builder.bitcast(builder.gep(start, [ir.Constant(_I32, part * PART)]), _LANES.as_pointer())
+def _pointer(builder: Any, start: Any) -> Any:
+    return builder.bitcast(start, _VECTOR.as_pointer())
 
 
-def _broadcast(builder: Any, scalar: Any) -> Any:
-    empty = ir.Constant(_LANES, ir.Undefined)
-    one = builder.insert_element(empty, scalar, ir.Constant(_I32, 0))
-    everywhere = builder.shuffle_vector(one, empty, ir.Constant(ir.VectorType(_I32, PART), [0] * PART))
-    return _each(builder, lambda: everywhere)
-
-
-def _call(builder: Any, name: str, result: Any, part: Any) -> Any:
+def _call(builder: Any, name: str, result: Any, vector: Any) -> Any:
     declare: Any = cgutils.get_or_insert_function
-    function = declare(builder.module, ir.FunctionType(result, [_LANES]), name)
-    return builder.call(function, [part])
+    function = declare(builder.module, ir.FunctionType(result, [_VECTOR]), f"{name}.v{LANES}f32")
+    return builder.call(function, [vector])
 
 
 @_intrinsic
@@ -80,9 +63,7 @@ def load(typing: Any, array: Any, index: Any) -> Any:
     """The vector at ``index`` of a float32 array."""
 
     def generate(context: Any, builder: Any, signature: Any, args: Any) -> Any:
-        start = _address(context, builder, signature, args)
-        parts = iter([builder.load(_address_of(part, builder, start), align=4) for part in range(PARTS)])
-        return _each(builder, lambda: next(parts))
+        return builder.load(_pointer(builder, _address(context, builder, signature, args)), align=4)
 
     return _TYPE(array, index), generate
 
@@ -92,34 +73,22 @@ def store(typing: Any, array: Any, index: Any, vector: Any) -> Any:
     """Writes a vector at ``index`` of a float32 array."""
 
     def generate(context: Any, builder: Any, signature: Any, args: Any) -> Any:
-        start = _address(context, builder, signature, args)
-        for part in range(PARTS):
-            builder.store(builder.extract_value(args[2], part), _address_of(part, builder, start), align=4)
+        builder.store(args[2], _pointer(builder, _address(context, builder, signature, args)), align=4)
         return context.get_dummy_value()
 
     return types.void(array, index, vector), generate
 
 
 @_intrinsic
-def tile(typing: Any, array: Any, row: Any) -> Any:
-    """The :data:`PART` numbers of one row of a float32 array with rows of that length, in every part of the vector.
-
-    Rows of one number repeated save the instructions that would spread a single one over a register.
-    """
-
-    def generate(context: Any, builder: Any, signature: Any, args: Any) -> Any:
-        index = builder.mul(args[1], ir.Constant(args[1].type, PART))
-        start = _address(context, builder, signature, (args[0], index))
-        numbers = builder.load(_address_of(0, builder, start), align=4)
-        return _each(builder, lambda: numbers)
-
-    return _TYPE(array, row), generate
-
-
-@_intrinsic
 def splat(typing: Any, scalar: Any) -> Any:
     """A float32 in every lane."""
-    return _TYPE(types.float32), lambda context, builder, signature, args: _broadcast(builder, args[0])
+
+    def generate(context: Any, builder: Any, signature: Any, args: Any) -> Any:
+        empty = ir.Constant(_VECTOR, ir.Undefined)
+        one = builder.insert_element(empty, args[0], ir.Constant(_I32, 0))
+        return builder.shuffle_vector(one, empty, ir.Constant(ir.VectorType(_I32, LANES), [0] * LANES))
+
+    return _TYPE(types.float32), generate
 
 
 @_intrinsic
@@ -127,8 +96,7 @@ def inverse_root(typing: Any, vector: Any) -> Any:
     """1 / sqrt of every lane."""
 
     def generate(context: Any, builder: Any, signature: Any, args: Any) -> Any:
-        one = ir.Constant(_LANES, [1.0] * PART)
-        return _each(builder, lambda x: builder.fdiv(one, _call(builder, "llvm.sqrt.v8f32", _LANES, x)), *args)
+        return builder.fdiv(ir.Constant(_VECTOR, [1.0] * LANES), _call(builder, "llvm.sqrt", _VECTOR, args[0]))
 
     return _TYPE(_TYPE), generate
 
@@ -138,10 +106,7 @@ def largest(typing: Any, vector: Any) -> Any:
     """The largest lane, a float32."""
 
     def generate(context: Any, builder: Any, signature: Any, args: Any) -> Any:
-        result = builder.extract_value(args[0], 0)
-        for part in range(1, PARTS):
-            result = _select(builder, ">", result, builder.extract_value(args[0], part))
-        return _call(builder, "llvm.vector.reduce.fmax.v8f32", ir.FloatType(), result)
+        return _call(builder, "llvm.vector.reduce.fmax", ir.FloatType(), args[0])
 
     return types.float32(_TYPE), generate
 
@@ -151,12 +116,12 @@ def _select(builder: Any, comparison: str, a: Any, b: Any) -> Any:
 
 
 def _lane_by_lane(make: Callable[[Any, Any, Any], Any]) -> Any:
-    """An operation on two vectors; ``make`` gets the builder and one part of each."""
+    """An operation on two vectors; ``make`` gets the builder and both."""
 
     @_intrinsic
     def operation(typing: Any, a: Any, b: Any) -> Any:
         def generate(context: Any, builder: Any, signature: Any, args: Any) -> Any:
-            return _each(builder, lambda x, y: make(builder, x, y), *args)
+            return make(builder, *args)
 
         return _TYPE(_TYPE, _TYPE), generate
 
@@ -166,7 +131,7 @@ def _lane_by_lane(make: Callable[[Any, Any, Any], Any]) -> Any:
 larger = _lane_by_lane(lambda builder, a, b: _select(builder, ">", a, b))
 where_positive = _lane_by_lane(
     lambda builder, a, b: builder.select(
-        builder.fcmp_ordered(">=", a, ir.Constant(_LANES, [0.0] * PART)), b, ir.Constant(_LANES, [0.0] * PART)
+        builder.fcmp_ordered(">=", a, ir.Constant(_VECTOR, [0.0] * LANES)), b, ir.Constant(_VECTOR, [0.0] * LANES)
     )
 )
 smaller = _lane_by_lane(lambda builder, a, b: _select(builder, "<", a, b))

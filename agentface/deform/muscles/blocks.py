@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from agentface.conventions import Doubles, Floats, Indices
-from agentface.deform.lanes import LANES, PART
+from agentface.deform.lanes import LANES
 from agentface.head.muscle_set import MuscleSet
 
 FIELDS = 12
@@ -42,7 +42,7 @@ class Blocks(NamedTuple):
     pull: Floats
     """``(P, LANES)`` m, elasticity times reach."""
     fibre: Floats
-    """``(M, FIELDS, PART)``, each number PART times: origin, axis / (1 - edge), -edge / (1 - edge), 1 / Rs,
+    """``(M, FIELDS, LANES)``, each number LANES times: origin, axis / (1 - edge), -edge / (1 - edge), 1 / Rs,
     1 / (Rf - Rs), Rs / (Rf - Rs), slope and base of the angular fall-off, where edge = cos(zone)."""
 
 
@@ -132,4 +132,4 @@ def _fibres(muscles: MuscleSet) -> Floats:
         edge if waters else np.zeros_like(edge),
     ]
     table: Floats = np.column_stack(columns).astype(np.float32)
-    return np.ascontiguousarray(np.repeat(table.reshape(-1, FIELDS, 1), PART, axis=2))
+    return np.ascontiguousarray(np.repeat(table.reshape(-1, FIELDS, 1), LANES, axis=2))

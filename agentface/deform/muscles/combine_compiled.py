@@ -18,7 +18,6 @@ from agentface.deform.simd import (
     smaller,
     splat,
     store,
-    tile,
     where_positive,
 )
 from agentface.kernel import kernel
@@ -122,20 +121,20 @@ def contract_block(
             part = parts[step, muscle]
             if part == _ZERO:
                 continue
-            at = muscle * FIELDS
-            x, y, z = px - tile(fibre, at), py - tile(fibre, at + 1), pz - tile(fibre, at + 2)
+            at = muscle * FIELDS * LANES
+            x, y, z = px - load(fibre, at), py - load(fibre, at + 1 * LANES), pz - load(fibre, at + 2 * LANES)
             square = z * z + (y * y + (x * x + _TINY))
             inverse = inverse_root(square)
             distance = square * inverse
-            along = x * tile(fibre, at + 3) + y * tile(fibre, at + 4) + z * tile(fibre, at + 5)
-            angular = along * inverse + tile(fibre, at + 6)
+            along = x * load(fibre, at + 3 * LANES) + y * load(fibre, at + 4 * LANES) + z * load(fibre, at + 5 * LANES)
+            angular = along * inverse + load(fibre, at + 6 * LANES)
             base = fibre[muscle, 11, 0]
             if base == _ZERO:
                 angular = larger(angular, splat(_ZERO))
             else:
-                angular = where_positive(angular, angular * tile(fibre, at + 10) + base)
-            rising = _ONE - distance * tile(fibre, at + 7)
-            falling = distance * tile(fibre, at + 8) - tile(fibre, at + 9)
+                angular = where_positive(angular, angular * load(fibre, at + 10 * LANES) + base)
+            rising = _ONE - distance * load(fibre, at + 7 * LANES)
+            falling = distance * load(fibre, at + 8 * LANES) - load(fibre, at + 9 * LANES)
             u = smaller(larger(rising, falling), splat(_ONE))
             q = u * u
             radial = (_ONE - q) * (_ONE + q * (_Q1 + q * (_Q2 + q * _Q3)))

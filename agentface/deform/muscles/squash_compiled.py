@@ -17,19 +17,23 @@ _ZERO, _ONE = np.float32(0.0), np.float32(1.0)
 def apply(tables: SquashTables, points: Floats) -> None:
     """Raise the squashed heights of ``points (P, 3)`` m in place; points without any stay as they are."""
     for _ in range(tables.passes):
-        _pass_over(tables, points)
+        if not _pass_over(tables, points):
+            break
 
 
 @kernel(error_model="numpy")
-def _pass_over(tables: SquashTables, points: Floats) -> None:
-    """One pass over the heights, pair by pair."""
+def _pass_over(tables: SquashTables, points: Floats) -> bool:
+    """One pass over the heights, pair by pair; whether it raised any: where not, the next would raise none."""
+    raised = False
     least, reach = np.float32(tables.least), np.float32(tables.least - tables.flat)
     for pair in range(tables.vertices.shape[0]):
         one, other = _left(tables, pair, 0, points), _left(tables, pair, 1, points)
+        raised |= one < least or other < least
         if one < least:
             _raise(tables, pair, 0, (least - one) / reach, reach, points)
         if other < least:
             _raise(tables, pair, 1, (least - other) / reach, reach, points)
+    return raised
 
 
 @kernel(error_model="numpy", inline="always")
