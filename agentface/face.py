@@ -5,14 +5,13 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
-from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn, Self
 
 import numpy as np
 
 from agentface.clock import Clock, SystemClock
-from agentface.conventions import Bytes, check_duration, check_fraction, check_range
+from agentface.conventions import Bytes, check_duration, check_fraction
 from agentface.deform.geometry import FaceGeometry
 from agentface.deform.protocol import DEFAULT_DEFORMER, make_deformer
 from agentface.emotion.explanation import Explanation
@@ -21,13 +20,11 @@ from agentface.emotion.state import EMOTIONS, EmotionState, canonical
 from agentface.errors import InvalidValueError, UnknownNameError
 from agentface.head.model import HeadModel, load_model
 from agentface.motion.mixer import Mixer
-from agentface.parameters import MUSCLES, PARAMETERS, FacePose, parameter
+from agentface.parameters import CONTRACTIONS, MUSCLES, FacePose, check_angle, muscle_names, parameter
 from agentface.resources import DEFAULT_FACE
 
 if TYPE_CHECKING:
     from agentface.view.renderer import Renderer
-
-_CONTRACTED = tuple(known for known in PARAMETERS if known.kind not in ("gaze", "head"))
 
 
 @dataclass(slots=True)
@@ -220,7 +217,7 @@ class Face:
     def geometry(self) -> FaceGeometry:
         """The face as shown now: as the last step left it, or at rest in a pose that was set since."""
         stepped, geometry = self._stepped
-        if geometry is not None and np.array_equal(stepped.values, self.pose.values):
+        if geometry is not None and stepped == self.pose:
             return geometry
         if self._geometry is None:
             self._geometry = self._deformer.at(self.pose)
@@ -291,7 +288,7 @@ class Face:
             "emotion": {name: round(value, 4) for name, value in emotion.target.as_dict().items()},
             "shown": {
                 "emotion": {name: round(value, 4) for name, value in shown},
-                "contractions": {known.name: round(pose[known.name], 4) for known in _CONTRACTED},
+                "contractions": {name: round(pose[name], 4) for name in CONTRACTIONS},
             },
             "speech": None,
             "gaze_deg": [round(math.degrees(pose[name]), 3) for name in ("gaze_yaw", "gaze_pitch")],
@@ -302,16 +299,3 @@ class Face:
 
     def _touch(self) -> None:
         self._pose = self._geometry = None
-
-
-@cache
-def muscle_names() -> tuple[str, ...]:
-    """The names that ``set_muscle`` knows: muscles without their side, then with it, and the jaw."""
-    return tuple(dict.fromkeys((*MUSCLES, *(known.name for known in _CONTRACTED))))
-
-
-def check_angle(name: str, degrees: Any) -> float:
-    """The angle of a parameter such as ``gaze_yaw`` in radians, given in degrees; raises InvalidValueError."""
-    known = parameter(name)
-    low, high = (round(math.degrees(limit), 6) for limit in (known.low, known.high))
-    return math.radians(check_range(f"{name}_deg", degrees, low, high))

@@ -1,7 +1,8 @@
-"""The registry of every animation parameter, and :class:`FacePose`, their values at one instant.
+"""The table of every animation parameter, and :class:`FacePose`, their values at one instant.
 
-This module is the one owner of the names. A face's ``muscles.yaml`` says how each vector muscle moves
-that face; the rules say how far each muscle contracts; both are checked against this list.
+This module is the one owner of the names, ranges and units: mixer, controls, OSC, the command line and the documents
+read the table. A face's ``muscles.yaml`` says how each vector muscle moves that face; the rules say how far each
+muscle contracts; both are checked against it.
 """
 
 from __future__ import annotations
@@ -10,90 +11,176 @@ import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import cache
-from typing import Literal
+from typing import Any, Literal, NamedTuple, get_args
 
 import numpy as np
 
 from agentface.conventions import SIDES, Floats, check_range
 from agentface.errors import InvalidValueError, UnknownNameError
+from agentface.named_array import NamedArray
 
 Kind = Literal["vector", "pseudo", "jaw", "gaze", "head"]
+"""What moves: a vector muscle, a muscle of another form, the jaw, the eyes, the head."""
+Unit = Literal["contraction", "opening", "rad"]
+"""Contractions and openings are 0..1, at 0 where the face is at rest; angles have a sign."""
+Group = Literal["brow", "eyes", "nose and cheek", "mouth", "jaw", "gaze", "head"]
+GROUPS: tuple[Group, ...] = get_args(Group)
+"""From the top of the face down, and then what turns."""
+Way = Literal["replace", "max", "add", "scale"]
+"""How what a channel asks is blended with what is there already: see :mod:`agentface.motion.mixer`."""
+WAYS: tuple[Way, ...] = get_args(Way)
+_FRACTIONS: tuple[Unit, ...] = ("contraction", "opening")
 
-_VECTOR: dict[str, str] = {
-    "frontalis_medialis": "frontalis, medial fibres: raise the inner brow (AU 1)",
-    "frontalis_intermedius": "frontalis, middle fibres: raise the middle of the brow (AU 1, 2)",
-    "frontalis_lateralis": "frontalis, lateral fibres: raise the outer brow (AU 2)",
-    "corrugator_supercilii": "draws the brow inward and down (AU 4)",
-    "depressor_supercilii": "draws the inner brow down (AU 4)",
-    "procerus": "draws the skin between the brows down (AU 4, 9)",
-    "orbicularis_oculi_medialis": "orbicularis oculi, pars orbitalis, lower medial fibres: raise the cheek (AU 6)",
-    "orbicularis_oculi_lateralis": "orbicularis oculi, pars orbitalis, lower lateral fibres: raise the cheek (AU 6)",
-    "levator_labii_superioris_alaeque_nasi": "wrinkles the nose (AU 9)",
-    "nasalis": "compresses the nose and wrinkles its side (AU 9)",
-    "levator_labii_superioris": "raises the upper lip (AU 10)",
-    "zygomaticus_minor": "draws the upper lip up and outward (AU 10, 11)",
-    "zygomaticus_major": "draws the lip corner up and outward: the smile (AU 12)",
-    "levator_anguli_oris": "raises the lip corner (AU 13)",
-    "depressor_anguli_oris": "draws the lip corner down (AU 15)",
-    "depressor_labii_inferioris": "draws the lower lip down (AU 16)",
-    "mentalis": "pushes the chin and the lower lip up (AU 17)",
-    "risorius": "stretches the lip corner outward (AU 20)",
-    "platysma": "stretches the lip corner outward and down (AU 20)",
+
+class _Row(NamedTuple):
+    """What parameters of one name have in common."""
+
+    kind: Kind
+    group: Group
+    description: str
+    paired: bool = True
+    unit: Unit = "contraction"
+    low: float = 0.0
+    high: float = 1.0
+    way: Way = "max"
+
+
+def _vector(group: Group, description: str) -> _Row:
+    return _Row("vector", group, description)
+
+
+def _pseudo(group: Group, description: str, *, paired: bool = True) -> _Row:
+    return _Row("pseudo", group, description, paired)
+
+
+def _angle(kind: Literal["gaze", "head"], low_deg: float, high_deg: float, description: str) -> _Row:
+    # what a pose, which is float32, gives back at its limit, it takes again
+    low, high = (float(np.float32(math.radians(limit))) for limit in (low_deg, high_deg))
+    return _Row(kind, kind, description, paired=False, unit="rad", low=low, high=high, way="add")
+
+
+_TABLE: dict[str, _Row] = {
+    "frontalis_medialis": _vector("brow", "frontalis, medial fibres: raise the inner brow (AU 1)"),
+    "frontalis_intermedius": _vector("brow", "frontalis, middle fibres: raise the middle of the brow (AU 1, 2)"),
+    "frontalis_lateralis": _vector("brow", "frontalis, lateral fibres: raise the outer brow (AU 2)"),
+    "corrugator_supercilii": _vector("brow", "draws the brow inward and down (AU 4)"),
+    "depressor_supercilii": _vector("brow", "draws the inner brow down (AU 4)"),
+    "procerus": _vector("brow", "draws the skin between the brows down (AU 4, 9)"),
+    "orbicularis_oculi_medialis": _vector(
+        "nose and cheek", "orbicularis oculi, orbital part, lower medial fibres: raise the cheek (AU 6)"
+    ),
+    "orbicularis_oculi_lateralis": _vector(
+        "nose and cheek", "orbicularis oculi, orbital part, lower lateral fibres: raise the cheek (AU 6)"
+    ),
+    "levator_labii_superioris_alaeque_nasi": _vector("nose and cheek", "wrinkles the nose (AU 9)"),
+    "nasalis": _vector("nose and cheek", "compresses the nose and wrinkles its side (AU 9)"),
+    "levator_labii_superioris": _vector("mouth", "raises the upper lip (AU 10)"),
+    "zygomaticus_minor": _vector("mouth", "draws the upper lip up and outward (AU 10, 11)"),
+    "zygomaticus_major": _vector("mouth", "draws the lip corner up and outward: the smile (AU 12)"),
+    "levator_anguli_oris": _vector("mouth", "raises the lip corner (AU 13)"),
+    "depressor_anguli_oris": _vector("mouth", "draws the lip corner down (AU 15)"),
+    "depressor_labii_inferioris": _vector("mouth", "draws the lower lip down (AU 16)"),
+    "mentalis": _vector("mouth", "pushes the chin and the lower lip up (AU 17)"),
+    "risorius": _vector("mouth", "stretches the lip corner outward (AU 20)"),
+    "platysma": _vector("mouth", "stretches the lip corner outward and down (AU 20)"),
+    "levator_palpebrae": _pseudo("eyes", "opens the upper lid past neutral (AU 5)"),
+    "orbicularis_oculi_palpebralis": _pseudo("eyes", "orbicularis oculi, palpebral part: closes the lids (AU 43, 45)"),
+    "orbicularis_oculi_orbitalis": _pseudo("eyes", "orbicularis oculi, orbital part: squeezes the eye"),
+    "orbicularis_oculi_preseptalis": _pseudo(
+        "eyes", "orbicularis oculi, preseptal part: tightens the lower lid (AU 7)"
+    ),
+    "orbicularis_oris_pucker": _pseudo("mouth", "orbicularis oris, puckering the lips (AU 18)", paired=False),
+    "orbicularis_oris_press": _pseudo("mouth", "orbicularis oris, pressing the lips together (AU 24)", paired=False),
+    "jaw_open": _Row("jaw", "jaw", "drops the jaw (AU 26, 27)", paired=False, unit="opening"),
+    "gaze_yaw": _angle("gaze", -50, 50, "the eyes turn to the person's left"),
+    "gaze_pitch": _angle("gaze", -40, 40, "the eyes turn upward"),
+    "head_yaw": _angle("head", -80, 80, "the head turns to its left"),
+    "head_pitch": _angle("head", -60, 60, "the head looks up"),
+    "head_roll": _angle("head", -50, 50, "the head tilts to its left"),
+    "gaze_vergence": _angle("gaze", -10, 25, "each eye turns inward"),
 }
-_PSEUDO: dict[str, str] = {
-    "levator_palpebrae": "opens the upper lid past neutral (AU 5)",
-    "orbicularis_oculi_palpebralis": "orbicularis oculi, pars palpebralis: closes the lids (AU 43, 45)",
-    "orbicularis_oculi_orbitalis": "orbicularis oculi, pars orbitalis: squeezes the eye",
-    "orbicularis_oculi_preseptalis": "orbicularis oculi, preseptal fibres: tightens the lower lid (AU 7)",
-}
-_MIDDLE: dict[str, str] = {
-    "orbicularis_oris_pucker": "orbicularis oris, puckering the lips (AU 18)",
-    "orbicularis_oris_press": "orbicularis oris, pressing the lips together (AU 24)",
-}
-MUSCLES: tuple[str, ...] = (*_VECTOR, *_PSEUDO, *_MIDDLE, "jaw_open")
-"""What a rule may contract: muscles without their side, and the jaw."""
-VECTOR_MUSCLES: tuple[str, ...] = tuple(f"{name}_{side}" for name in _VECTOR for side in SIDES)
-"""The vector muscles with their sides, in the order of their parameters."""
 
 
 @dataclass(frozen=True, slots=True)
 class Parameter:
-    """One animation parameter: its place in a pose, its unit and its range."""
+    """One animation parameter.
+
+    Attributes:
+        name: with its side last where it has one.
+        index: its place in a pose.
+        kind: what moves.
+        unit: of ``low``, ``high`` and ``neutral``.
+        low: the least value.
+        high: the largest value.
+        neutral: its value when nothing moves the face.
+        partner: the same on the other side of the face; None in the middle.
+        group: the part of the face to which a user would look for it.
+        way: how a channel's value is blended with that of the others, where ``rules/conflicts.yaml`` says nothing else.
+        description: what it does.
+    """
 
     name: str
     index: int
     kind: Kind
-    unit: str
+    unit: Unit
     low: float
     high: float
+    neutral: float
+    partner: str | None
+    group: Group
+    way: Way
     description: str
+
+    @property
+    def contracts(self) -> bool:
+        """Whether it is a muscle, or the jaw: something that is held between 0, at rest, and 1."""
+        return self.unit in _FRACTIONS
+
+    @property
+    def bounds(self) -> tuple[float, float]:
+        """The range as people give it: contractions and openings 0..1, angles in degrees."""
+        if self.unit != "rad":
+            return self.low, self.high
+        return round(math.degrees(self.low), 6), round(math.degrees(self.high), 6)
 
 
 def _build() -> tuple[Parameter, ...]:
-    rows: list[tuple[str, Kind, str, float, float, str]] = []
-    paired: list[tuple[dict[str, str], Kind]] = [(_VECTOR, "vector"), (_PSEUDO, "pseudo")]
-    for table, kind in paired:
-        rows += [(f"{name}_{side}", kind, "contraction", 0, 1, text) for name, text in table.items() for side in SIDES]
-    rows += [(name, "pseudo", "contraction", 0, 1, text) for name, text in _MIDDLE.items()]
-    rows.append(("jaw_open", "jaw", "of the widest opening", 0, 1, "drops the jaw (AU 26, 27)"))
-    for name, limit_deg, text in (
-        ("gaze_yaw", 50, "the eyes turn to the person's left"),
-        ("gaze_pitch", 40, "the eyes turn upward"),
-        ("head_yaw", 80, "the head turns to its left"),
-        ("head_pitch", 60, "the head looks up"),
-        ("head_roll", 50, "the head tilts to its left"),
-    ):
-        limit = float(np.float32(math.radians(limit_deg)))  # what a pose gives back at its limit, it takes again
-        rows.append((name, "gaze" if name.startswith("gaze") else "head", "rad", -limit, limit, text))
-    apart, together = (float(np.float32(math.radians(limit_deg))) for limit_deg in (-10, 25))
-    rows.append(("gaze_vergence", "gaze", "rad", apart, together, "each eye turns inward"))
-    return tuple(Parameter(row[0], index, *row[1:]) for index, row in enumerate(rows))
+    rows: list[tuple[str, str | None, _Row]] = []
+    for name, row in _TABLE.items():
+        left, right = (f"{name}_{side}" for side in SIDES)
+        rows += [(left, right, row), (right, left, row)] if row.paired else [(name, None, row)]
+    return tuple(
+        Parameter(
+            name,
+            index,
+            kind=row.kind,
+            unit=row.unit,
+            low=row.low,
+            high=row.high,
+            neutral=0.0,
+            partner=partner,
+            group=row.group,
+            way=row.way,
+            description=row.description,
+        )
+        for index, (name, partner, row) in enumerate(rows)
+    )
 
 
 PARAMETERS: tuple[Parameter, ...] = _build()
 NAMES: tuple[str, ...] = tuple(parameter.name for parameter in PARAMETERS)
-_BY_NAME = {parameter.name: parameter for parameter in PARAMETERS}
 COUNT = len(PARAMETERS)
+MUSCLES: tuple[str, ...] = tuple(name for name, row in _TABLE.items() if row.unit in _FRACTIONS)
+"""What a rule may contract: muscles without their side, and the jaw."""
+CONTRACTIONS: tuple[str, ...] = tuple(parameter.name for parameter in PARAMETERS if parameter.contracts)
+"""The parameters that are 0..1, sides apart: every muscle, and the jaw."""
+VECTOR_MUSCLES: tuple[str, ...] = tuple(parameter.name for parameter in PARAMETERS if parameter.kind == "vector")
+"""The vector muscles with their sides, in the order of their parameters."""
+LOW: Floats = np.array([parameter.low for parameter in PARAMETERS], np.float32)
+HIGH: Floats = np.array([parameter.high for parameter in PARAMETERS], np.float32)
+NEUTRAL: Floats = np.array([parameter.neutral for parameter in PARAMETERS], np.float32)
+LOW.flags.writeable = HIGH.flags.writeable = NEUTRAL.flags.writeable = False
+_BY_NAME = {parameter.name: parameter for parameter in PARAMETERS}
 
 
 def parameter(name: str) -> Parameter:
@@ -117,24 +204,55 @@ def indices_of(muscle: str) -> tuple[int, ...]:
     raise UnknownNameError("muscle", muscle, (*MUSCLES, *NAMES))
 
 
-class FacePose(Mapping[str, float]):
+@cache
+def muscle_names() -> tuple[str, ...]:
+    """The names that a muscle is known by: those without side, then those with it, and the jaw."""
+    return tuple(dict.fromkeys((*MUSCLES, *CONTRACTIONS)))
+
+
+def check_angle(name: str, degrees: Any) -> float:
+    """The angle of a parameter such as ``gaze_yaw`` in radians, given in degrees; raises InvalidValueError."""
+    return math.radians(check_range(f"{name}_deg", degrees, *parameter(name).bounds))
+
+
+def check_pose(values: Floats) -> None:
+    """Raise InvalidValueError, naming the first parameter, unless ``values (COUNT,)`` lie within their ranges."""
+    if np.count_nonzero((values >= LOW) & (values <= HIGH)) != len(values):  # a frame's time: faster than all()
+        raise _refusal(values)
+
+
+def check_poses(values: Floats) -> None:
+    """As :func:`check_pose` for ``(B, COUNT)``; the error also names the pose."""
+    good = ((values >= LOW) & (values <= HIGH)).all(axis=1)
+    if not good.all():
+        pose = int(np.argmin(good))
+        raise _refusal(values[pose], f"pose {pose}: ")
+
+
+def _refusal(values: Floats, before: str = "") -> InvalidValueError:
+    index = int(np.argmin((values >= LOW) & (values <= HIGH)))
+    known, got = PARAMETERS[index], float(values[index])
+    what, unit = ("angle", " rad") if known.unit == "rad" else ("contraction", "")
+    expected = f"a number in {known.low:g}..{known.high:g}{unit}" if np.isfinite(got) else "a finite number"
+    return InvalidValueError(f"{before}{what} of {known.name}", expected, got)
+
+
+class FacePose(NamedArray):
     """Every animation parameter at one instant; immutable, neutral where not said otherwise.
 
-    ``values`` is a read-only float32 array of ``COUNT`` values in the order of ``PARAMETERS``.
+    ``array`` is a read-only float32 array of ``COUNT`` values in the order of ``PARAMETERS``.
     """
 
-    __slots__ = ("values",)
-    # An array instead of the method that Mapping has under this name: every frame reads it.
-    values: Floats  # type: ignore[assignment]
+    __slots__ = ()
+    array: Floats
 
-    def __init__(self, values: Floats | None = None) -> None:
-        array = np.zeros(COUNT, np.float32) if values is None else np.array(values, np.float32)
-        if array.shape != (COUNT,):
-            raise InvalidValueError("FacePose", f"{COUNT} values", array.shape)
-        if not np.isfinite(array).all():
-            raise InvalidValueError("FacePose", "finite values", array[~np.isfinite(array)][0])
-        array.flags.writeable = False
-        self.values = array
+    def __init__(self, array: Floats | None = None) -> None:
+        values = np.array(NEUTRAL if array is None else array, np.float32)
+        if values.shape != (COUNT,):
+            raise InvalidValueError("FacePose", f"{COUNT} values", values.shape)
+        if not np.isfinite(values).all():
+            raise InvalidValueError("FacePose", "finite values", values[~np.isfinite(values)][0])
+        self._freeze(values)
 
     @classmethod
     def of(cls, **contractions: float) -> FacePose:
@@ -143,7 +261,7 @@ class FacePose(Mapping[str, float]):
 
     def replace(self, contractions: Mapping[str, float]) -> FacePose:
         """A copy with some parameters changed; raises UnknownNameError or InvalidValueError."""
-        values = self.values.copy()
+        values = self.array.copy()
         for name, value in contractions.items():
             for index in indices_of(name):
                 known = PARAMETERS[index]
@@ -151,13 +269,10 @@ class FacePose(Mapping[str, float]):
         return FacePose(values)
 
     def __getitem__(self, name: str) -> float:
-        return float(self.values[parameter(name).index])
+        return float(self.array[parameter(name).index])
 
     def __iter__(self) -> Iterator[str]:
         return iter(NAMES)
-
-    def __len__(self) -> int:
-        return COUNT
 
     def __repr__(self) -> str:
         active = ", ".join(f"{name}={value:.3g}" for name, value in self.items() if value)

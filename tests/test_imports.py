@@ -15,7 +15,7 @@ PACKAGE = Path(agentface.__file__).parent
 
 LAYERS = (
     ("errors",),
-    ("conventions", "resources", "config", "cache"),
+    ("conventions", "named_array", "resources", "config", "cache"),
     ("parameters", "clock", "kernel"),
     ("mesh",),
     ("head",),

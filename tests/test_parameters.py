@@ -1,3 +1,7 @@
+import copy
+import math
+import pickle
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -49,8 +53,70 @@ def test_a_pose_holds_what_it_was_given_and_nothing_else(contractions):
 def test_a_pose_does_not_change():
     pose = FacePose.of(jaw_open=0.5)
     with pytest.raises(ValueError, match="read-only"):
-        pose.values[0] = 1.0
+        pose.array[0] = 1.0
     with pytest.raises(InvalidValueError):
         FacePose(np.full(COUNT, np.nan, np.float32))
     with pytest.raises(InvalidValueError):
         FacePose(np.zeros(3, np.float32))
+
+
+def test_the_table_is_consistent():
+    for known in PARAMETERS:
+        assert known.low <= known.neutral <= known.high
+        assert known.low == np.float32(known.low)
+        assert known.high == np.float32(known.high)
+        assert known.way in parameters.WAYS
+        assert known.group in parameters.GROUPS
+        assert known.contracts == (known.name in parameters.CONTRACTIONS)
+        if known.contracts:
+            assert (known.low, known.high, known.bounds) == (0.0, 1.0, (0.0, 1.0))
+        else:
+            assert known.unit == "rad"
+            assert [math.radians(bound) for bound in known.bounds] == pytest.approx([known.low, known.high], abs=1e-6)
+
+
+def test_partners_are_each_others_on_the_other_side():
+    by_name = {known.name: known for known in PARAMETERS}
+    for known in PARAMETERS:
+        side = known.name[-2:]
+        assert (known.partner is None) == (side not in ("_l", "_r"))
+        if known.partner is not None:
+            other = by_name[known.partner]
+            assert other.partner == known.name
+            assert {side, other.name[-2:]} == {"_l", "_r"}
+            assert (other.kind, other.unit, other.group, other.way) == (known.kind, known.unit, known.group, known.way)
+
+
+def test_a_signed_or_turned_parameter_is_no_muscle():
+    for name in ("gaze_yaw", "gaze_pitch", "gaze_vergence", "head_yaw", "head_pitch", "head_roll"):
+        assert name not in parameters.muscle_names()
+        assert not parameters.parameter(name).contracts
+    assert parameters.parameter("gaze_yaw").bounds == (-50.0, 50.0)
+    assert "jaw_open" in parameters.muscle_names()
+
+
+def test_a_pose_is_a_whole_mapping():
+    pose = FacePose.of(risorius=0.25, head_yaw=-0.5)
+    assert list(pose.values()) == pose.array.tolist()
+    assert dict(pose) == dict(zip(parameters.NAMES, pose.array.tolist(), strict=True))
+    assert pose == dict(pose)
+    assert "risorius_l" in pose
+
+
+@given(st.dictionaries(st.sampled_from(MUSCLES), st.floats(0, 1)))
+def test_equal_poses_hash_pickle_and_copy_alike(contractions):
+    pose, same = FacePose.of(**contractions), FacePose.of(**contractions)
+    assert pose == same
+    assert hash(pose) == hash(same)
+    for twin in (pickle.loads(pickle.dumps(pose)), copy.copy(pose), copy.deepcopy(pose)):  # noqa: S301 - our own bytes
+        assert type(twin) is FacePose
+        assert twin == pose
+        assert not twin.array.flags.writeable
+    assert pose.replace({"jaw_open": 0.5}) != pose.replace({"jaw_open": 0.25})
+
+
+def test_a_negative_zero_is_a_zero():
+    minus = FacePose(np.full(COUNT, -0.0, np.float32))
+    assert minus == FacePose()
+    assert hash(minus) == hash(FacePose())
+    assert pickle.dumps(minus) == pickle.dumps(FacePose())

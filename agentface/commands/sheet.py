@@ -34,7 +34,7 @@ class Cell(NamedTuple):
         """What a face shows whose sides make ``gains (COUNT,)`` of an emotion."""
         from agentface.parameters import FacePose
 
-        return FacePose(self.felt.values * gains).replace(self.held)
+        return FacePose(self.felt.array * gains).replace(self.held)
 
 
 def _levels(_: click.Context, __: click.Parameter, value: str) -> list[float]:

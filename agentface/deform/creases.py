@@ -67,7 +67,7 @@ def _moves(model: HeadModel, of_eyelids: EyelidsTables, of_lips: LipTables) -> l
     rest = np.concatenate([model.vertices, of_lips.control_rest])
     moves = []
     for name, part in _MOVES.items():
-        values, there = FacePose.of(**{name: 1.0}).values, rest.copy()
+        values, there = FacePose.of(**{name: 1.0}).array, rest.copy()
         lips.contract(of_lips, values, there)
         eyelids.apply(of_eyelids, values, there)
         lips.surface(of_lips, there)

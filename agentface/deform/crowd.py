@@ -12,10 +12,9 @@ import numpy.typing as npt
 from agentface.conventions import Floats
 from agentface.deform.geometry import FaceArrays, FaceGeometry
 from agentface.deform.protocol import DEFAULT_DEFORMER, Deformer, Frames, make_deformer
-from agentface.deform.ranges import check_poses
 from agentface.errors import InvalidValueError
 from agentface.head.model import HeadModel
-from agentface.parameters import COUNT, FacePose
+from agentface.parameters import COUNT, FacePose, check_poses
 
 _EXPECTED = f"an array of numbers of shape (B, {COUNT}) or a sequence of poses"
 _CHUNK = 8  # faces that a thread takes at a time, at most
@@ -59,7 +58,7 @@ class Crowd:
         self.close()
 
     def deform(self, poses: npt.ArrayLike | Sequence[FacePose]) -> FaceGeometry:
-        """The faces in ``poses``: a sequence of them, or ``(B, COUNT)``, rows like ``FacePose.values``.
+        """The faces in ``poses``: a sequence of them, or ``(B, COUNT)``, rows like ``FacePose.array``.
 
         The result's arrays are overwritten by the next call; they grow with the largest crowd so far.
 
@@ -124,7 +123,7 @@ def _checked(poses: npt.ArrayLike | Sequence[FacePose]) -> Floats:
 def _array(poses: npt.ArrayLike | Sequence[FacePose]) -> npt.NDArray[Any]:
     rows: Any = poses
     if isinstance(poses, (list, tuple)):
-        rows = [pose.values if isinstance(pose, FacePose) else pose for pose in poses] or np.zeros((0, COUNT))
+        rows = [pose.array if isinstance(pose, FacePose) else pose for pose in poses] or np.zeros((0, COUNT))
     try:
         array = np.asarray(rows)
     except (TypeError, ValueError):  # rows of different lengths

@@ -13,9 +13,8 @@ from agentface.deform.geometry import FaceArrays, FaceGeometry
 from agentface.deform.muscles.combine import Combiner, Method
 from agentface.deform.order import Stage
 from agentface.deform.protocol import Frames
-from agentface.deform.ranges import check_pose
 from agentface.head.model import HeadModel
-from agentface.parameters import VECTOR_MUSCLES, FacePose, indices_of
+from agentface.parameters import VECTOR_MUSCLES, FacePose, check_pose, indices_of
 
 _FIRST_MUSCLE = indices_of(VECTOR_MUSCLES[0])[0]
 _MUSCLES = slice(_FIRST_MUSCLE, _FIRST_MUSCLE + len(VECTOR_MUSCLES))
@@ -65,15 +64,15 @@ class GeometricDeformer:
 
         Raises InvalidValueError for a parameter outside its range.
         """
-        check_pose(pose.values)
-        self.frames(0, 1, pose.values[None], self._arrays)
+        check_pose(pose.array)
+        self.frames(0, 1, pose.array[None], self._arrays)
         return self._shown
 
     def at(self, pose: FacePose) -> FaceGeometry:
         """The face in ``pose``, in arrays of its own; raises InvalidValueError for a parameter outside its range."""
-        check_pose(pose.values)
+        check_pose(pose.array)
         rows = self._new_rows()
-        self.frames(0, 1, pose.values[None], rows.arrays())
+        self.frames(0, 1, pose.array[None], rows.arrays())
         return rows[0]
 
     def worker(self) -> Frames:
@@ -83,7 +82,7 @@ class GeometricDeformer:
     def stages(self, geometry: FaceGeometry) -> dict[str, Callable[[FacePose], None]]:
         """What a frame consists of, in its order, by name: each goes on from what the ones before it left."""
         face = geometry.arrays()
-        acts: dict[str, Callable[[FacePose], None]] = {"muscles": lambda pose: self._contract(pose.values)}
+        acts: dict[str, Callable[[FacePose], None]] = {"muscles": lambda pose: self._contract(pose.array)}
         for stage in Stage:
             acts[stage.name.lower()] = partial(self._skin_stages, stage, stage)
         acts["copy"] = lambda _: self._copy(face)
@@ -103,13 +102,13 @@ class GeometricDeformer:
         self._combiner.apply(values[_MUSCLES], self._points)
 
     def _skin_stages(self, first: int, last: int, pose: FacePose) -> None:
-        self._deform(first, last, self._tables.skin, pose.values, self._points)
+        self._deform(first, last, self._tables.skin, pose.array, self._points)
 
     def _copy(self, face: FaceArrays) -> None:
         face.vertices[:] = self._points[: len(face.vertices)]
 
     def _last_stages(self, face: FaceArrays, first: int, last: int, pose: FacePose) -> None:
-        self._finish(first, last, self._tables.finish, pose.values, face)
+        self._finish(first, last, self._tables.finish, pose.array, face)
 
     def _new_rows(self) -> FaceGeometry:
         return FaceGeometry.at_rest(self._model.vertices, self._model.normals, len(self._model.trains), batch=(1,))

@@ -72,7 +72,7 @@ class Explanation:
 
 def explain(rulebase: RuleBase, state: EmotionState) -> Explanation:
     """Infer ``state`` step by step, by the numpy twin of the kernel."""
-    weights = mode_weights(state.values, rulebase.gap)
+    weights = mode_weights(state.array, rulebase.gap)
     modes = [_outcome(rulebase.mode(emotions), weight, state) for emotions, weight in weights.items()]
     modes.sort(key=lambda mode: -mode.weight)
     contractions = dict.fromkeys(MUSCLES, 0.0)
@@ -83,7 +83,7 @@ def explain(rulebase: RuleBase, state: EmotionState) -> Explanation:
 
 
 def _outcome(mode: Mode, weight: float, state: EmotionState) -> ModeOutcome:
-    strengths = rule_strengths(state.values[[EMOTIONS.index(emotion) for emotion in mode.emotions]])
+    strengths = rule_strengths(state.array[[EMOTIONS.index(emotion) for emotion in mode.emotions]])
     rules = []
     outcomes = []
     for muscle, consequents in mode.consequents.items():

@@ -55,7 +55,7 @@ class Inference:
             contractions = self.explain(state).contractions
             return np.array([contractions.get(muscle, 0.0) for muscle in MUSCLES])
         out = np.empty(len(MUSCLES))
-        self._infer(EmotionState.of(state).values, *self._compiled, SETS, out)
+        self._infer(EmotionState.of(state).array, *self._compiled, SETS, out)
         return out
 
     def pose(self, state: State) -> FacePose:

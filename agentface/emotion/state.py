@@ -9,9 +9,10 @@ import numpy as np
 
 from agentface.conventions import Doubles, check_fraction
 from agentface.errors import InvalidValueError, UnknownNameError
+from agentface.named_array import NamedArray
 
 EMOTIONS: tuple[str, ...] = ("happiness", "sadness", "anger", "fear", "disgust", "surprise")
-"""The big six of the W3C vocabularies for EmotionML, in the order of ``EmotionState.values``."""
+"""The big six of the W3C vocabularies for EmotionML, in the order of ``EmotionState.array``."""
 
 _ALIASES: dict[str, tuple[str, ...]] = {
     "happiness": ("happy", "joy", "joyful", "smile"),
@@ -34,24 +35,22 @@ def canonical(name: object) -> str:
     return emotion
 
 
-class EmotionState(Mapping[str, float]):
+class EmotionState(NamedArray):
     """Six intensities in 0..1, immutable; a mapping from the name of an emotion to its intensity.
 
-    ``values`` is a read-only float64 array of six in the order of ``EMOTIONS``.
+    ``array`` is a read-only float64 array of six in the order of ``EMOTIONS``.
     """
 
-    __slots__ = ("values",)
-    values: Doubles  # type: ignore[assignment]  # an array, where other mappings have a method
+    __slots__ = ()
+    array: Doubles
 
-    def __init__(self, values: Any = None) -> None:
-        given = np.zeros(len(EMOTIONS)) if values is None else np.asarray(values)
+    def __init__(self, array: Any = None) -> None:
+        given = np.zeros(len(EMOTIONS)) if array is None else np.asarray(array)
         if given.shape != (len(EMOTIONS),):
             raise InvalidValueError("EmotionState", f"{len(EMOTIONS)} intensities", given.shape)
-        array: Doubles = np.array(
-            [check_fraction(name, value) for name, value in zip(EMOTIONS, given.tolist(), strict=True)]
+        self._freeze(
+            np.array([check_fraction(name, value) for name, value in zip(EMOTIONS, given.tolist(), strict=True)])
         )
-        array.flags.writeable = False
-        self.values = array
 
     @classmethod
     def of(cls, intensities: Mapping[str, float] | None = None, /, **named: float) -> EmotionState:
@@ -73,19 +72,13 @@ class EmotionState(Mapping[str, float]):
 
     def as_dict(self) -> dict[str, float]:
         """All six intensities by name."""
-        return dict(zip(EMOTIONS, self.values.tolist(), strict=True))
+        return dict(zip(EMOTIONS, self.array.tolist(), strict=True))
 
     def __getitem__(self, name: str) -> float:
-        return float(self.values[EMOTIONS.index(canonical(name))])
+        return float(self.array[EMOTIONS.index(canonical(name))])
 
     def __iter__(self) -> Iterator[str]:
         return iter(EMOTIONS)
-
-    def __len__(self) -> int:
-        return len(EMOTIONS)
-
-    def __hash__(self) -> int:
-        return hash(self.values.tobytes())
 
     def __repr__(self) -> str:
         active = ", ".join(f"{name}={value:.3g}" for name, value in self.as_dict().items() if value)

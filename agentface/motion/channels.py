@@ -57,7 +57,7 @@ class EmotionChannel:
             ended = self._left <= 0.0
             fade = float(self._fades[ended].max())
             self._left[ended] = math.inf
-            self._aim(dict(zip(EMOTIONS, np.where(ended, 0.0, self.target.values).tolist(), strict=True)), fade)
+            self._aim(dict(zip(EMOTIONS, np.where(ended, 0.0, self.target.array).tolist(), strict=True)), fade)
         self._advance(dt)
 
     def write(self, values: Doubles) -> None:
@@ -71,7 +71,7 @@ class EmotionChannel:
 
     def _aim(self, intensities: Mapping[str, float], fade: float) -> None:
         self.target = EmotionState.of(intensities)
-        self.intensities.move(self.target.values, fade)
+        self.intensities.move(self.target.array, fade)
         self._muscles.move(self._inference.contractions(self.target), fade)
 
 

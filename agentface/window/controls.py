@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from agentface.emotion.state import EMOTIONS
 from agentface.errors import UnknownNameError
-from agentface.parameters import PARAMETERS, parameter
+from agentface.parameters import CONTRACTIONS, parameter
 from agentface.view.camera import Camera, named_view
 from agentface.view.gl.quality import QUALITIES
 from agentface.window.capture import Capture
@@ -28,7 +28,6 @@ _FARTHEST_PAN_M = 0.3
 _VIEW_KEYS = {"F": "front", "T": "three-quarter", "P": "profile"}
 
 ANGLES = ("gaze_yaw", "gaze_pitch", "head_yaw", "head_pitch", "head_roll")
-_CONTRACTED = tuple(known.name for known in PARAMETERS if known.kind not in ("gaze", "head"))
 
 
 class Controls:
@@ -54,7 +53,7 @@ class Controls:
         held, turned = self.face.held, self.face.turned_deg
         return {
             **dict(self.face.emotion),
-            **{name: held.get(name) for name in _CONTRACTED},
+            **{name: held.get(name) for name in CONTRACTIONS},
             **{name: turned[name] for name in ANGLES},
         }
 
@@ -86,7 +85,7 @@ class Controls:
 
     def reset(self) -> None:
         """Neutral, everything released, straight ahead."""
-        self.change(dict.fromkeys(EMOTIONS, 0.0) | dict.fromkeys(_CONTRACTED) | dict.fromkeys(ANGLES, 0.0))
+        self.change(dict.fromkeys(EMOTIONS, 0.0) | dict.fromkeys(CONTRACTIONS) | dict.fromkeys(ANGLES, 0.0))
 
     def preset(self, name: str) -> None:
         """Set the six emotions to those of ``PRESETS[name]``."""
@@ -156,7 +155,7 @@ class Controls:
             for name, value in emotions.items():
                 face.set_emotion(name, value, fade=fade)
         for name in values:
-            if name in _CONTRACTED:
+            if name in CONTRACTIONS:
                 face.set_muscle(name, values[name], fade=fade)
         angles = {name: value for name, value in values.items() if name in ANGLES and value is not None}
         for part, turn in (("gaze", face.set_gaze), ("head", face.set_head)):
@@ -167,18 +166,17 @@ class Controls:
 
 def bounds(name: str) -> tuple[float, float]:
     """The lowest and the highest value of an emotion, a muscle or an angle; raises UnknownNameError."""
-    if name in ANGLES:
-        known = parameter(name)
-        return round(math.degrees(known.low), 6), round(math.degrees(known.high), 6)
-    if name not in EMOTIONS and name not in _CONTRACTED:
-        raise UnknownNameError("value", name, (*EMOTIONS, *_CONTRACTED, *ANGLES))
-    return 0.0, 1.0
+    if name in EMOTIONS:
+        return 0.0, 1.0
+    if name not in CONTRACTIONS and name not in ANGLES:
+        raise UnknownNameError("value", name, (*EMOTIONS, *CONTRACTIONS, *ANGLES))
+    return parameter(name).bounds
 
 
 def _within(name: str, value: float | None) -> float | None:
     low, high = bounds(name)
     if value is None:
-        return None if name in _CONTRACTED else 0.0
+        return None if name in CONTRACTIONS else 0.0
     return round(max(low, min(high, float(value))), 6)
 
 

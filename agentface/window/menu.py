@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from agentface.conventions import SIDES
 from agentface.emotion.state import EMOTIONS
-from agentface.parameters import NAMES
+from agentface.parameters import GROUPS as GROUPS_OF_PARAMETERS
+from agentface.parameters import MUSCLES, NAMES, PARAMETERS, parameter
 
 KEYS = (
     ("1 .. 6", "more happiness, sadness, anger, fear, disgust, surprise"),
@@ -31,41 +32,16 @@ SLIDERS = (
     ("Ctrl click", "type a number"),
 )
 
+
+def sides(muscle: str) -> tuple[str, ...]:
+    """The parameters of a muscle of ``GROUPS``: two for a paired one."""
+    return (muscle,) if muscle in NAMES else tuple(f"{muscle}_{side}" for side in SIDES)
+
+
 GROUPS: dict[str, tuple[str, ...]] = {
-    "Brow": (
-        "frontalis_medialis",
-        "frontalis_intermedius",
-        "frontalis_lateralis",
-        "corrugator_supercilii",
-        "depressor_supercilii",
-        "procerus",
-    ),
-    "Eyes": (
-        "levator_palpebrae",
-        "orbicularis_oculi_preseptalis",
-        "orbicularis_oculi_palpebralis",
-        "orbicularis_oculi_orbitalis",
-    ),
-    "Nose and cheek": (
-        "levator_labii_superioris_alaeque_nasi",
-        "nasalis",
-        "orbicularis_oculi_medialis",
-        "orbicularis_oculi_lateralis",
-    ),
-    "Mouth": (
-        "levator_labii_superioris",
-        "zygomaticus_minor",
-        "zygomaticus_major",
-        "levator_anguli_oris",
-        "risorius",
-        "platysma",
-        "depressor_anguli_oris",
-        "depressor_labii_inferioris",
-        "mentalis",
-        "orbicularis_oris_pucker",
-        "orbicularis_oris_press",
-    ),
-    "Jaw": ("jaw_open",),
+    group.capitalize(): tuple(muscle for muscle in MUSCLES if parameter(sides(muscle)[0]).group == group)
+    for group in GROUPS_OF_PARAMETERS
+    if any(known.group == group and known.contracts for known in PARAMETERS)
 }
 """Every muscle, those of two sides without their side."""
 
@@ -78,11 +54,6 @@ PRESETS: dict[str, dict[str, float]] = {
     "alarm": {"fear": 0.8, "surprise": 0.8},
     "amused contempt": {"happiness": 0.6, "disgust": 0.6},
 }
-
-
-def sides(muscle: str) -> tuple[str, ...]:
-    """The parameters of a muscle of ``GROUPS``: two for a paired one."""
-    return (muscle,) if muscle in NAMES else tuple(f"{muscle}_{side}" for side in SIDES)
 
 
 def help_text() -> str:

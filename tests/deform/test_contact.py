@@ -138,7 +138,7 @@ def test_the_oracle_sees_lips_that_pass_through(face):
 def test_lips_that_only_touch_stay_bit_for_bit(face):
     for module in (contact, compiled):
         points = FACES[face].vertices.copy()
-        module.apply(TABLES[face], FacePose().values, points)
+        module.apply(TABLES[face], FacePose().array, points)
         np.testing.assert_array_equal(points, FACES[face].vertices)
 
 
@@ -154,7 +154,7 @@ def test_overlapping_lips_part_by_half_each(depth, slide):
         points[lower, 1] += 0.5 * depth * MM
         points[upper, 0] += slide * MM
         before = points.copy()
-        contact.apply(tables, FacePose().values, points)
+        contact.apply(tables, FacePose().array, points)
         assert mouth.crossings(points, np.eye(4))[0] == 0
         raised, sunk = points[upper, 1] - before[upper, 1], before[lower, 1] - points[lower, 1]
         assert raised.min() >= 0
@@ -171,7 +171,7 @@ def test_the_teeth_hold_lips_that_are_pushed_in(face):
         geometry = deformer_of(face, compiled=False).at(pose)
         points = geometry.vertices.copy()
         points[tables.grid[3:12], 2] -= 6 * MM
-        contact.apply(tables, pose.values, points)
+        contact.apply(tables, pose.array, points)
         assert mouth.crossings(points, geometry.jaw)[1:] == (0, 0)
 
 
@@ -190,7 +190,7 @@ def test_the_arch_has_the_teeth_behind_it_and_lies_close(face):
 @settings(max_examples=30)
 @given(st.floats(0, 1), st.floats(0, 1), st.floats(0, 6), st.integers(0, 10**6))
 def test_compiled_and_numpy_agree(opening, press, size, seed):
-    values = FacePose.of(jaw_open=opening, orbicularis_oris_press=press).values
+    values = FacePose.of(jaw_open=opening, orbicularis_oris_press=press).array
     for face, model in FACES.items():
         noise = np.random.default_rng(seed).standard_normal(model.vertices.shape)
         one = (model.vertices + size * MM * noise).astype(np.float32)
@@ -210,7 +210,7 @@ def test_contact_is_symmetric(face):
     model, tables, flip = FACES[face], TABLES[face], np.array([-1, 1, 1])
     rng = np.random.default_rng(2)
     for opening in np.linspace(0.0, 0.5, 30):
-        values = FacePose.of(jaw_open=float(opening)).values
+        values = FacePose.of(jaw_open=float(opening)).array
         one = bent(model, rng, 1.2 * MM)
         one[tables.grid[:, tables.upper[1:-1]], 1] -= 1.5 * MM
         other = (one[model.mirror] * flip).astype(np.float32)
@@ -224,7 +224,7 @@ def test_contact_is_symmetric(face):
 def test_contact_is_continuous(face):
     """Two poses a hair apart end up a few hairs apart, also where columns change their neighbours across."""
     model, tables = FACES[face], TABLES[face]
-    rng, values = np.random.default_rng(3), FacePose().values
+    rng, values = np.random.default_rng(3), FacePose().array
     for _ in range(40):
         one = bent(model, rng, 1.5 * MM)
         other = (one + 1e-5 * rng.standard_normal(one.shape)).astype(np.float32)

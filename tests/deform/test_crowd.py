@@ -11,10 +11,9 @@ from hypothesis import strategies as st
 
 from agentface.deform.crowd import Crowd
 from agentface.deform.pipeline import GeometricDeformer
-from agentface.deform.ranges import check_pose, check_poses
 from agentface.errors import InvalidValueError
 from agentface.head.resample import thinned
-from agentface.parameters import COUNT, NAMES, PARAMETERS, FacePose
+from agentface.parameters import COUNT, NAMES, PARAMETERS, FacePose, check_pose, check_poses
 from agentface.studies.bench.crowd import random_poses
 from tests.heads import deformer_of, head_model
 
@@ -136,14 +135,14 @@ def test_what_a_pose_takes_the_deformers_take(fractions):
     limits = zip(PARAMETERS, fractions, strict=True)
     within = {known.name: min(known.low + (known.high - known.low) * part, known.high) for known, part in limits}
     pose = FacePose.of(**within)
-    check_pose(pose.values)
-    check_poses(pose.values[None])
+    check_pose(pose.array)
+    check_poses(pose.array[None])
 
 
 def test_a_sequence_of_poses_is_a_crowd():
     poses = [FacePose.of(jaw_open=0.5), FacePose.of(zygomaticus_major=1.0, head_yaw=-0.3)]
-    kept = crowd().deform(np.stack([pose.values for pose in poses])).vertices.copy()
-    for sequence in (poses, tuple(poses), [poses[0], poses[1].values.tolist()]):
+    kept = crowd().deform(np.stack([pose.array for pose in poses])).vertices.copy()
+    for sequence in (poses, tuple(poses), [poses[0], poses[1].array.tolist()]):
         np.testing.assert_array_equal(crowd().deform(sequence).vertices, kept)
     assert len(crowd().deform([])) == 0
 

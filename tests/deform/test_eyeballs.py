@@ -30,7 +30,7 @@ def face(request):
 def rotations(face, angles, **others):
     pose = FacePose.of(**others).replace(dict(zip(GAZE, angles, strict=True)))
     out = np.zeros((2, 3, 3), np.float32)
-    eyes.apply(TABLES[face], pose.values, out)
+    eyes.apply(TABLES[face], pose.array, out)
     return out
 
 
@@ -66,7 +66,7 @@ def test_a_near_point_makes_the_eyes_converge_and_a_far_one_does_not(face):
 @given(ANGLES)
 def test_no_eye_leaves_its_hole_and_none_is_held_back_inside(angles):
     for face, tables in TABLES.items():
-        values = FacePose().replace(dict(zip(GAZE, angles, strict=True))).values
+        values = FacePose().replace(dict(zip(GAZE, angles, strict=True))).array
         for side, inward in ((0, -1), (1, 1)):
             asked = np.array([values[tables.yaw] + inward * values[tables.vergence], values[tables.pitch]], np.float64)
             hole = np.array([tables.yaw_limit, tables.pitch_limit])
@@ -82,7 +82,7 @@ def test_no_eye_leaves_its_hole_and_none_is_held_back_inside(angles):
 
 @given(ANGLES)
 def test_the_compiled_form_is_the_numpy_form(angles):
-    values = FacePose().replace(dict(zip(GAZE, angles, strict=True))).values
+    values = FacePose().replace(dict(zip(GAZE, angles, strict=True))).array
     out = np.zeros((2, 3, 3), np.float32)
     for face, tables in TABLES.items():
         compiled.apply(tables, values, out)

@@ -37,7 +37,7 @@ def moved(face, values, points=None):
 
 
 def posed(face, **contractions):
-    return moved(face, FacePose.of(**contractions).values)
+    return moved(face, FacePose.of(**contractions).array)
 
 
 def edges(face, points, side="l", ring=None):
@@ -68,7 +68,7 @@ def opening(face, points, side="l"):
 
 def test_the_pose_at_rest_moves_nothing(face):
     points = FACES[face].vertices.copy()
-    compiled.apply(TABLES[face], FacePose().values, points)
+    compiled.apply(TABLES[face], FacePose().array, points)
     np.testing.assert_array_equal(points, FACES[face].vertices)
     np.testing.assert_array_equal(posed(face), FACES[face].vertices)
 
@@ -236,7 +236,7 @@ def test_closing_one_eye_squeezes_it_and_closing_both_does_not(face):
 
 def test_the_lids_take_the_gaze_that_the_eye_hole_leaves(face):
     tables = eyes.prepare(FACES[face])
-    values = FacePose.of(gaze_yaw=0.8, gaze_pitch=0.2).values
+    values = FacePose.of(gaze_yaw=0.8, gaze_pitch=0.2).array
     pitch = eyes.eye_angles(tables, values, 0)[1]
     np.testing.assert_allclose(moved(face, values)[TABLES[face].vertex[0]],
                                posed(face, gaze_pitch=pitch)[TABLES[face].vertex[0]], atol=1e-7)  # fmt: skip

@@ -18,7 +18,7 @@ ANGLES = st.tuples(
 
 def turned(module, yaw, pitch, roll):
     out = np.full((4, 4), np.nan, np.float32)
-    module.apply(TABLES, FacePose.of(head_yaw=yaw, head_pitch=pitch, head_roll=roll).values, out)
+    module.apply(TABLES, FacePose.of(head_yaw=yaw, head_pitch=pitch, head_roll=roll).array, out)
     return out
 
 

@@ -30,7 +30,7 @@ def face(request):
 
 def opened(face, opening, points=None):
     result = (FACES[face].vertices if points is None else points).copy()
-    jaw.apply(TABLES[face], FacePose.of(jaw_open=opening).values, result)
+    jaw.apply(TABLES[face], FacePose.of(jaw_open=opening).array, result)
     return result
 
 
@@ -43,7 +43,7 @@ def drawn(face, opening):
 
 def transform(face, opening):
     matrix = np.empty((4, 4), np.float32)
-    teeth.apply(teeth.prepare(FACES[face]), FacePose.of(jaw_open=opening).values, matrix)
+    teeth.apply(teeth.prepare(FACES[face]), FacePose.of(jaw_open=opening).array, matrix)
     return matrix
 
 
@@ -153,7 +153,7 @@ def test_points_between_vertices_follow_their_mean(face):
     tables = jaw.prepare(model, (vertices, weights))
     rest = np.concatenate([model.vertices, draw.normal(size=(40, 3)).astype(np.float32) * 0.1])
     moved = rest.copy()
-    jaw.apply(tables, FacePose.of(jaw_open=0.8).values, moved)
+    jaw.apply(tables, FacePose.of(jaw_open=0.8).array, moved)
     np.testing.assert_array_equal(moved[:-40], opened(face, 0.8))
     share = (model.jaw_weights[vertices] * weights).sum(axis=1)
     start = rest[-40:] + (drawn(face, 0.8)[vertices] * weights[..., None]).sum(axis=1)
@@ -162,7 +162,7 @@ def test_points_between_vertices_follow_their_mean(face):
 
 @given(st.floats(0, 1, width=32))
 def test_compiled_and_plain_are_the_same(opening):
-    values = FacePose.of(jaw_open=opening).values
+    values = FacePose.of(jaw_open=opening).array
     for face, model in FACES.items():
         plain, fast = model.vertices.copy(), model.vertices.copy()
         jaw.apply(TABLES[face], values, plain)

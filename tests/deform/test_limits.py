@@ -45,7 +45,7 @@ def contracted(face, contractions):
 
 
 def of_pose(face, pose):
-    return contracted(face, pose.values[FIRST : FIRST + len(VECTOR_MUSCLES)])
+    return contracted(face, pose.array[FIRST : FIRST + len(VECTOR_MUSCLES)])
 
 
 def travel(face, points):

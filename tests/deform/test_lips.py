@@ -32,7 +32,7 @@ def at_rest(face):
 
 def contracted(face, module=lips, **contractions):
     points = at_rest(face)
-    module.contract(TABLES[face], FacePose.of(**contractions).values, points)
+    module.contract(TABLES[face], FacePose.of(**contractions).array, points)
     module.surface(TABLES[face], points)
     return points
 
@@ -183,7 +183,7 @@ def test_a_press_hides_the_red_of_the_lips(face):
 
 def test_the_press_rolls_the_lips_in_only_when_strong(face):
     tables = TABLES[face]
-    levels = [lips.contraction_levels(tables, FacePose.of(orbicularis_oris_press=v).values) for v in (0, 0.4, 0.7, 1)]
+    levels = [lips.contraction_levels(tables, FacePose.of(orbicularis_oris_press=v).array) for v in (0, 0.4, 0.7, 1)]
     np.testing.assert_allclose([level[2] for level in levels], [0, 0, 0.25, 1], atol=1e-6)
 
 
@@ -208,7 +208,7 @@ def test_the_muscle_agrees_with_the_artists(face, muscle, shapes, least):
 @settings(max_examples=30)
 @given(st.floats(0, 1), st.floats(0, 1), st.integers(0, 10**6))
 def test_compiled_and_numpy_agree(pucker, press, seed):
-    pose = FacePose.of(orbicularis_oris_pucker=pucker, orbicularis_oris_press=press).values
+    pose = FacePose.of(orbicularis_oris_pucker=pucker, orbicularis_oris_press=press).array
     for face, tables in TABLES.items():
         one = moved_far(face, seed, 0.004)
         other = one.copy()

@@ -12,11 +12,11 @@ TURNED = [name for name in NAMES if name.endswith(("yaw", "roll"))]
 
 def image(pose):
     """The pose with left and right exchanged."""
-    values = pose.values.copy()
+    values = pose.array.copy()
     for name in NAMES:
         if name.endswith("_l"):
             left, right = indices_of(name[:-2])
-            values[[left, right]] = pose.values[[right, left]]
+            values[[left, right]] = pose.array[[right, left]]
     for name in TURNED:
         values[indices_of(name)[0]] *= -1
     return FacePose(values)
@@ -45,5 +45,5 @@ def test_a_mirrored_pose_makes_the_mirrored_face(face, compiled):
 
 def test_the_mirror_of_the_mirror_is_the_pose():
     for pose in random_poses(20, seed=3):
-        np.testing.assert_array_equal(image(image(pose)).values, pose.values)
-        assert not np.array_equal(image(pose).values, pose.values)
+        np.testing.assert_array_equal(image(image(pose)).array, pose.array)
+        assert not np.array_equal(image(pose).array, pose.array)

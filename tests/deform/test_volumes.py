@@ -26,7 +26,7 @@ def face(request):
 
 def moved(face, **muscles):
     points = FACES[face].vertices.copy()
-    volumes.apply(TABLES[face], FacePose.of(**muscles).values, points)
+    volumes.apply(TABLES[face], FacePose.of(**muscles).array, points)
     return points.astype(np.float64) - FACES[face].vertices
 
 
@@ -43,7 +43,7 @@ def test_both_forms_agree(values):
 def test_a_face_at_rest_stays_to_the_bit(face):
     for module in (volumes, compiled):
         points = FACES[face].vertices.copy()
-        module.apply(TABLES[face], FacePose().values, points)
+        module.apply(TABLES[face], FacePose().array, points)
         np.testing.assert_array_equal(points, FACES[face].vertices)
 
 
@@ -106,7 +106,7 @@ def test_shares_add_up_to_one_and_no_further(face):
     )
     rest = FACES[face].vertices.copy()
     pose = FacePose.of(zygomaticus_major=1.0, orbicularis_oculi_lateralis=1.0, orbicularis_oculi_medialis=1.0)
-    volumes.apply(volumes.prepare(others), pose.values, rest)
+    volumes.apply(volumes.prepare(others), pose.array, rest)
     left = FACES[face].vertices[:, 0] > 0.002
     np.testing.assert_allclose((alone - (rest - FACES[face].vertices))[left], own[left], atol=1e-7)
 
@@ -115,5 +115,5 @@ def test_a_face_without_volumes_has_empty_tables(face):
     tables = volumes.prepare(replace(FACES[face], volumes_file=VolumesFile(volumes={})))
     points = FACES[face].vertices.copy()
     for module in (volumes, compiled):
-        module.apply(tables, FacePose.of(zygomaticus_major=1.0).values, points)
+        module.apply(tables, FacePose.of(zygomaticus_major=1.0).array, points)
     np.testing.assert_array_equal(points, FACES[face].vertices)

@@ -21,7 +21,7 @@ LEVELS = np.linspace(0.0, 1.0, 21)
 
 
 def largest_step(inference: Inference, ramped: str, others: dict[str, float]) -> float:
-    states = np.tile(EmotionState.of(others).values, (100 * FINE + 1, 1))
+    states = np.tile(EmotionState.of(others).array, (100 * FINE + 1, 1))
     states[:, EMOTIONS.index(ramped)] = np.linspace(0.0, 1.0, len(states))
     ramp = np.array([inference.contractions(EmotionState(state)) for state in states])
     return float(np.abs(ramp[FINE:] - ramp[:-FINE]).max())

@@ -18,7 +18,7 @@ INTENSITIES = st.lists(st.floats(0.0, 1.0), min_size=6, max_size=6)
 
 def test_neutral_is_exactly_at_rest(inference: Inference):
     assert not inference.contractions(EmotionState()).any()
-    assert not inference.pose({}).values.any()
+    assert not inference.pose({}).array.any()
 
 
 @pytest.mark.parametrize("emotion", EMOTIONS)
@@ -87,9 +87,9 @@ def test_a_pose_holds_the_contractions_on_both_sides(inference: Inference):
     moved = set()
     for muscle, contraction in zip(MUSCLES, inference.contractions(state), strict=True):
         for index in indices_of(muscle):
-            assert pose.values[index] == np.float32(contraction)
+            assert pose.array[index] == np.float32(contraction)
             moved.add(index)
-    assert not any(pose.values[index] for index in range(len(pose)) if index not in moved)
+    assert not any(pose.array[index] for index in range(len(pose)) if index not in moved)
 
 
 def test_a_blend_has_the_brows_of_one_and_the_mouth_of_the_other(inference: Inference):

@@ -36,8 +36,8 @@ def by_hand(shown, time):
 @given(st.lists(cues(), max_size=8), st.floats(-1.0, 30.0))
 def test_the_state_is_the_largest_of_each_emotion(shown, time):
     state = Score(shown).state(time)
-    assert state.values == pytest.approx(by_hand(shown, time), abs=1e-9)
-    assert ((state.values >= 0.0) & (state.values <= 1.0)).all()
+    assert state.array == pytest.approx(by_hand(shown, time), abs=1e-9)
+    assert ((state.array >= 0.0) & (state.array <= 1.0)).all()
 
 
 @given(st.lists(cues(), max_size=8))
@@ -86,7 +86,7 @@ def test_a_face_that_is_told_the_changes_follows_a_trace(rate):
     for frame in range(5 * 60):
         change = score.change(frame / 60)
         if change is not told:
-            shown.move(change.state.values, change.fade_s)
+            shown.move(change.state.array, change.fade_s)
             told = change
         shown.advance(1 / 60)
         apart.append(abs(shown.value[0] - score.state((frame + 1) / 60)["happiness"]))

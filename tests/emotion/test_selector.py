@@ -15,7 +15,7 @@ INTENSITIES = st.lists(st.floats(0.0, 1.0), min_size=6, max_size=6).map(np.array
 
 
 def weights_of(**intensities: float) -> dict[tuple[str, ...], float]:
-    return mode_weights(EmotionState.of(**intensities).values, GAP)
+    return mode_weights(EmotionState.of(**intensities).array, GAP)
 
 
 def as_array(weights: dict[tuple[str, ...], float]) -> np.ndarray:

@@ -48,7 +48,7 @@ def largest_difference(rulebase: RuleBase, mode: Mode, states: list[EmotionState
         patch.setattr(ControlSystem, "rules", ordered := list(simulation.ctrl.rules))
         assert len(ordered) == 5 ** len(mode.emotions)
         for state in states:
-            weight = mode_weights(state.values, rulebase.gap)[mode.emotions]
+            weight = mode_weights(state.array, rulebase.gap)[mode.emotions]
             centroids = control_centroids(simulation, reduced, state)
             for muscle, contraction in zip(MUSCLES, inference.contractions(state), strict=True):
                 expected = weight * rescale(centroids[alike[muscle]]) if muscle in alike else 0.0
@@ -68,6 +68,6 @@ def test_blends_equal_scikit_fuzzy(rulebase: RuleBase, rng: np.random.Generator,
     states = []
     while len(states) < BLEND_STATES:
         state = EmotionState.of(dict(zip(pair, rng.random(2).tolist(), strict=True)))
-        if mode_weights(state.values, rulebase.gap).get(pair, 0.0) > 1e-3:
+        if mode_weights(state.array, rulebase.gap).get(pair, 0.0) > 1e-3:
             states.append(state)
     assert largest_difference(rulebase, rulebase.mode(pair), states) < TOLERANCE

@@ -1,5 +1,7 @@
 from __future__ import annotations
 
+import copy
+import pickle
 from typing import Any
 
 import numpy as np
@@ -56,7 +58,8 @@ def test_a_state_is_a_mapping_that_keeps_its_numbers(values: list[float]):
     state = EmotionState(values)
     assert [state[name] for name in state] == values
     assert dict(state.items()) == state.as_dict() == dict(zip(EMOTIONS, values, strict=True))
-    assert EmotionState.of(state.as_dict()) == state
+    assert list(state.values()) == values
+    assert EmotionState.of(state.as_dict()) == state == state.as_dict()
     assert hash(EmotionState.of(state.as_dict())) == hash(EmotionState(np.array(values)))
 
 
@@ -66,7 +69,7 @@ def test_a_state_cannot_be_changed():
     given[0] = 1.0
     assert state["happiness"] == 0.0
     with pytest.raises(ValueError, match="read-only"):
-        state.values[0] = 1.0
+        state.array[0] = 1.0
     with pytest.raises(TypeError):
         state["fear"] = 1.0  # type: ignore[index]
 
@@ -77,3 +80,13 @@ def test_an_alias_reads_a_state():
     assert "angry" in state
     assert "hungry" not in state
     assert repr(state) == "EmotionState.of(anger=0.5)"
+
+
+@given(st.lists(st.floats(0.0, 1.0), min_size=6, max_size=6))
+def test_a_state_pickles_and_copies(values: list[float]):
+    state = EmotionState(values)
+    for twin in (pickle.loads(pickle.dumps(state)), copy.copy(state), copy.deepcopy(state)):  # noqa: S301 - our own
+        assert type(twin) is EmotionState
+        assert twin == state
+        assert hash(twin) == hash(state)
+        assert not twin.array.flags.writeable

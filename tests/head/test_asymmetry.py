@@ -89,8 +89,8 @@ def test_an_emotion_is_lopsided_by_the_gains_and_a_pose_of_muscles_is_not():
         for _ in range(50):
             face.step(0.1)
     left, right = indices_of("zygomaticus_major")
-    assert level.pose.values[left] == level.pose.values[right]
-    ratio = smiling.pose.values[right] / smiling.pose.values[left]
+    assert level.pose.array[left] == level.pose.array[right]
+    ratio = smiling.pose.array[right] / smiling.pose.array[left]
     gains = smiling.model.gains
     assert ratio == pytest.approx(gains[right] / gains[left], rel=1e-3)
     assert ratio < 1.0

@@ -321,6 +321,6 @@ def test_any_valid_document_gives_states_and_changes_in_order(said, parts):
     assert told[0] == 0.0
     assert score.state(score.duration_s) == score.changes[-1].state == EmotionState()
     for part in parts:
-        values = score.state(part * score.length_s).values
+        values = score.state(part * score.length_s).array
         assert ((values >= 0.0) & (values <= 1.0)).all()
     assert min(cue.start_s for cue in score.cues) == 0.0

@@ -19,7 +19,7 @@ def mixer():
 def test_the_emotion_ends_where_the_rules_say(mixer):
     mixer.emotion.change({"fear": 0.6, "surprise": 0.3}, 0.2, None)
     mixer.advance(0.2)
-    np.testing.assert_array_equal(mixer.pose().values, default_inference().pose({"fear": 0.6, "surprise": 0.3}).values)
+    np.testing.assert_array_equal(mixer.pose().array, default_inference().pose({"fear": 0.6, "surprise": 0.3}).array)
     assert mixer.emotion.target == EmotionState.of(fear=0.6, surprise=0.3)
 
 
@@ -28,13 +28,13 @@ def test_the_emotion_ends_where_the_rules_say(mixer):
 )
 def test_no_muscle_jumps_between_emotions(plan):
     mixer = Mixer(default_inference())
-    before = mixer.pose().values.copy()
+    before = mixer.pose().array.copy()
     shortest = min((fade for _, _, fade, _ in plan), default=1.0)
     for emotion, intensity, fade, seconds in plan:
         mixer.emotion.change({emotion: intensity}, fade, hold=0.1)
         for _ in range(round(seconds / 0.02)):
             mixer.advance(0.02)
-            now = mixer.pose().values
+            now = mixer.pose().array
             assert np.abs(now - before).max() <= 2.0 * 1.875 / shortest * 0.02 + 1e-6
             before = now
 
@@ -47,7 +47,7 @@ def test_hold_returns_one_emotion_and_leaves_the_others(mixer):
     mixer.advance(0.02)
     assert mixer.emotion.target == EmotionState.of(anger=0.4)
     mixer.advance(0.2)
-    np.testing.assert_array_equal(mixer.pose().values, default_inference().pose({"anger": 0.4}).values)
+    np.testing.assert_array_equal(mixer.pose().array, default_inference().pose({"anger": 0.4}).array)
 
 
 def test_a_newer_message_cancels_the_hold(mixer):
@@ -67,7 +67,7 @@ def test_frame_rate_does_not_change_the_motion(frames):
     for _ in range(frames):
         fine.advance(0.5 / frames)
     coarse.advance(0.5)
-    np.testing.assert_allclose(fine.pose().values, coarse.pose().values, atol=1e-6)
+    np.testing.assert_allclose(fine.pose().array, coarse.pose().array, atol=1e-6)
 
 
 def test_a_muscle_set_by_name_wins_and_can_be_given_back(mixer):

@@ -24,7 +24,7 @@ def model(request):
 def puckered(model):
     tables = deformer.prepare(model)
     points = np.concatenate([model.vertices, tables.control_rest])
-    deformer.contract(tables, FacePose.of(orbicularis_oris_pucker=1.0).values, points)
+    deformer.contract(tables, FacePose.of(orbicularis_oris_pucker=1.0).array, points)
     deformer.surface(tables, points)
     return points[: len(model.vertices)]
 

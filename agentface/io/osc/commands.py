@@ -9,8 +9,9 @@ from typing import Any
 from agentface.conventions import check_duration, check_fraction
 from agentface.emotion.state import EMOTIONS, EmotionState, canonical
 from agentface.errors import AgentFaceError, InvalidValueError, UnknownNameError
-from agentface.face import Face, check_angle, muscle_names
+from agentface.face import Face
 from agentface.io.osc.codec import Message
+from agentface.parameters import check_angle, muscle_names
 
 PREFIX = "/agentface/"
 STATUS = "status"

@@ -81,7 +81,7 @@ def run(states: int = 24, seed: int = 0) -> dict[str, Any]:
         for _ in range(_REPEATS):
             contractions = inference.contractions(state)
         ours.append((perf_counter() - start) / _REPEATS)
-        weights = mode_weights(state.values, rules.gap)
+        weights = mode_weights(state.array, rules.gap)
         start = perf_counter()
         centroids = {mode: control_centroids(simulations[mode], rules.mode(mode), state) for mode in weights}
         theirs.append(perf_counter() - start)

@@ -91,7 +91,7 @@ def emotion_levels(muscles: int) -> list[Doubles]:
     from agentface.parameters import VECTOR_MUSCLES, indices_of
 
     first = indices_of(VECTOR_MUSCLES[0])[0]
-    poses = (default_inference().pose({emotion: 1.0}).values for emotion in EMOTIONS)
+    poses = (default_inference().pose({emotion: 1.0}).array for emotion in EMOTIONS)
     return [values[first : first + muscles].astype(np.float64) for values in poses]
 
 

@@ -133,9 +133,9 @@ def test_the_frame_is_told_beside_its_baseline_stage_by_stage_and_by_density():
 
 def test_the_poses_of_the_frame_are_what_they_are_called():
     faces = frame.poses()
-    assert sum(1 for value in faces["smile"].values if value == 1.0) == 8
-    assert sum(1 for value in faces["smile"].values if value) == 8
-    assert all(faces["all_active"].values > 0)
+    assert sum(1 for value in faces["smile"].array if value == 1.0) == 8
+    assert sum(1 for value in faces["smile"].array if value) == 8
+    assert all(faces["all_active"].array > 0)
 
 
 def test_the_stages_of_a_frame_make_the_frame():
