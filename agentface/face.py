@@ -11,16 +11,31 @@ from typing import TYPE_CHECKING, Any, NoReturn, Self
 import numpy as np
 
 from agentface.clock import Clock, SystemClock
-from agentface.conventions import Bytes, check_duration, check_fraction
+from agentface.conventions import Bytes, check_duration
 from agentface.deform.geometry import FaceGeometry
 from agentface.deform.protocol import DEFAULT_DEFORMER, make_deformer
 from agentface.emotion.explanation import Explanation
 from agentface.emotion.inference import default_inference
-from agentface.emotion.state import EMOTIONS, EmotionState, canonical
+from agentface.emotion.state import EMOTIONS, NEUTRAL, EmotionState, canonical_or_neutral
 from agentface.errors import InvalidValueError, UnknownNameError
 from agentface.head.model import HeadModel, load_model
 from agentface.motion.mixer import Mixer
-from agentface.parameters import CONTRACTIONS, MUSCLES, FacePose, check_angle, muscle_names, parameter
+from agentface.parameters import CONTRACTIONS, MUSCLES, FacePose
+from agentface.requests import (
+    FADE_S,
+    GAZE_FADE_S,
+    HEAD_FADE_S,
+    Blink,
+    LookAt,
+    Neutral,
+    Request,
+    SetEmotion,
+    SetEmotions,
+    SetGaze,
+    SetHead,
+    SetMuscle,
+    SetParameter,
+)
 from agentface.resources import DEFAULT_FACE
 
 if TYPE_CHECKING:
@@ -72,9 +87,11 @@ class Face:
         self.traffic = Traffic()
         self.inputs: list[Callable[[], None]] = []
         """Called at the start of every step: where servers hand over what came in."""
+        self.noted: list[Callable[[Request], None]] = []
+        """Called with every request after it was applied: who steps a face again later notes them here."""
         self._clock = clock or SystemClock()
         self._inference = default_inference(compiled=compiled)
-        self._mixer = Mixer(self._inference, self.model.gains)
+        self.channels = Mixer(self._inference, self.model.gains)
         self._deformer = make_deformer(deformer, self.model, compiled=compiled)
         self._renderer: Renderer | None = None
         self._look = look
@@ -85,83 +102,77 @@ class Face:
         self._stepped: tuple[FacePose, FaceGeometry | None] = (self.pose, None)
         self._frame_ms = 0.0
 
+    def apply(self, request: Request) -> None:
+        """Do what is asked; every other way to ask something of a face ends here.
+
+        Raises what the request raises, and then nothing has changed.
+        """
+        request.apply(self)
+        self._touch()
+        for note in self.noted:
+            note(request)
+
     def set_emotion(
         self,
         emotion: str | Mapping[str, float],
         intensity: float | None = None,
         *,
-        fade: float = 0.25,
+        fade: float = FADE_S,
         hold: float | None = None,
     ) -> None:
         """Show one emotion at ``intensity`` 0..1 beside the others, or, given a mapping, exactly this state.
 
         The face gets there in ``fade`` seconds. With ``hold`` it goes back, as fast, after so many seconds.
+        ``neutral`` lets go of the emotions alone: at an intensity below 1, or in a mapping, it leaves each of them at
+        most 1 minus that; by itself it needs no intensity.
         """
-        fade = check_duration("fade", fade)
-        hold = None if hold is None else check_duration("hold", hold)
-        if isinstance(emotion, Mapping):
-            if intensity is not None:
-                raise InvalidValueError("intensity", "none beside a mapping, which has its own", intensity)
-            changes = EmotionState.of(emotion).as_dict()
-        else:
-            changes = {canonical(emotion): check_fraction("intensity", intensity)}
-        self._mixer.emotion.change(changes, fade, hold)
-        self._touch()
+        if not isinstance(emotion, Mapping):
+            if intensity is None and canonical_or_neutral(emotion) == NEUTRAL:
+                intensity = 1.0
+            self.apply(SetEmotion(emotion, intensity, fade, hold))  # type: ignore[arg-type]  # refuses None itself
+            return
+        if intensity is not None:
+            raise InvalidValueError("intensity", "none beside a mapping, which has its own", intensity)
+        self.apply(SetEmotions(EmotionState.of(emotion), fade, hold))
 
-    def neutral(self, fade: float = 0.25) -> None:
+    def neutral(self, fade: float = FADE_S) -> None:
         """Let go of everything: emotions, single muscles, jaw, gaze and head."""
-        fade = check_duration("fade", fade)
-        self._mixer.emotion.change(EmotionState().as_dict(), fade, None)
-        self._mixer.muscles.release(None, fade)
-        self._mixer.gaze.turn((0.0, 0.0, 0.0), fade)
-        self._mixer.head.turn((0.0, 0.0, 0.0), fade)
-        self._touch()
+        self.apply(Neutral(fade))
 
-    def set_muscle(self, name: str, contraction: float | None, *, fade: float = 0.25) -> None:
+    def set_muscle(self, name: str, contraction: float | None, *, fade: float = FADE_S) -> None:
         """Hold a muscle (both sides where ``name`` has none) at 0..1, whatever else moves it; None releases it."""
-        fade = check_duration("fade", fade)
-        if name not in muscle_names():
-            raise UnknownNameError("muscle", name, muscle_names())
-        if contraction is None:
-            self._mixer.muscles.release(name, fade)
-        else:
-            self._mixer.muscles.set(name, check_fraction(name, contraction), fade)
-        self._touch()
+        self.apply(SetMuscle(name, contraction, fade))
 
-    def set_jaw(self, opening: float | None, *, fade: float = 0.25) -> None:
+    def set_parameter(self, name: str, value: float | None, *, fade: float = FADE_S) -> None:
+        """Set any one parameter in its unit; an angle in radians, or in degrees with ``_deg`` after its name.
+
+        None releases it: a muscle goes back to the emotions, an angle to 0.
+        """
+        self.apply(SetParameter(name, value, fade))
+
+    def set_jaw(self, opening: float | None, *, fade: float = FADE_S) -> None:
         """Hold the jaw open at 0..1 of its widest opening; None releases it."""
-        self.set_muscle("jaw_open", opening, fade=fade)
+        self.apply(SetMuscle("jaw_open", opening, fade))
 
-    def set_gaze(self, yaw_deg: float, pitch_deg: float, *, fade: float = 0.06) -> None:
+    def set_gaze(self, yaw_deg: float, pitch_deg: float, *, fade: float = GAZE_FADE_S) -> None:
         """Look ``yaw_deg`` to the person's left (-50..50) and ``pitch_deg`` up (-40..40); a saccade by default."""
-        fade = check_duration("fade", fade)
-        self._mixer.gaze.turn((check_angle("gaze_yaw", yaw_deg), check_angle("gaze_pitch", pitch_deg), 0.0), fade)
-        self._touch()
+        self.apply(SetGaze(yaw_deg, pitch_deg, fade))
 
-    def look_at(self, point: Sequence[float], *, fade: float = 0.06) -> None:
+    def look_at(self, point: Sequence[float], *, fade: float = GAZE_FADE_S) -> None:
         """Look at a point, each eye exactly: x, y, z in metres in the model's axes, where the head is not turned.
 
         A point too far aside is looked at as far as the eyes turn. Raises InvalidValueError for a point that is not
         in front of the eyes.
         """
-        from agentface.deform.eyes.eyeballs import toward
+        self.apply(LookAt.of(point, fade))
 
-        fade = check_duration("fade", fade)
-        angles = zip(("gaze_yaw", "gaze_pitch", "gaze_vergence"), toward(self.model, point), strict=True)
-        known = [(parameter(name), angle) for name, angle in angles]
-        self._mixer.gaze.turn(tuple(min(max(angle, limits.low), limits.high) for limits, angle in known), fade)
-        self._touch()
-
-    def set_head(self, yaw_deg: float, pitch_deg: float, roll_deg: float = 0.0, *, fade: float = 0.4) -> None:
+    def set_head(self, yaw_deg: float, pitch_deg: float, roll_deg: float = 0.0, *, fade: float = HEAD_FADE_S) -> None:
         """Turn the head to its left (-80..80), up (-60..60), and tilt it to its left (-50..50)."""
-        fade = check_duration("fade", fade)
-        turns = (("head_yaw", yaw_deg), ("head_pitch", pitch_deg), ("head_roll", roll_deg))
-        self._mixer.head.turn(tuple(check_angle(name, angle) for name, angle in turns), fade)
-        self._touch()
+        self.apply(SetHead(yaw_deg, pitch_deg, roll_deg, fade))
 
     def blink(self) -> None:
         """Blink once."""
-        self._mixer.blink.blink()
+        self.apply(Blink())
 
     def step(self, dt: float) -> FaceGeometry:
         """Take in what came from outside, let ``dt`` seconds pass, and return the face as it is then.
@@ -172,7 +183,7 @@ class Face:
         for take_in in self.inputs:
             take_in()
         start = self._clock.now()
-        self._mixer.advance(dt)
+        self.channels.advance(dt)
         self._touch()
         geometry = self._deformer.step(self.pose, dt)
         self._stepped = self.pose, geometry
@@ -190,19 +201,19 @@ class Face:
     @property
     def emotion(self) -> EmotionState:
         """The target intensities: what the face shows when its moves are done."""
-        return self._mixer.emotion.target
+        return self.channels.emotion.target
 
     @property
     def held(self) -> dict[str, float]:
         """The muscles, sides apart, and the jaw that are set by hand, and the contraction that each goes to."""
-        return self._mixer.muscles.held
+        return self.channels.muscles.held
 
     @property
     def turned_deg(self) -> dict[str, float]:
         """Where gaze and head go: ``gaze_yaw``, ``gaze_pitch``, ``head_yaw``, ``head_roll``, ... in degrees."""
         return {
             name: round(math.degrees(angle), 6)
-            for channel in (self._mixer.gaze, self._mixer.head)
+            for channel in (self.channels.gaze, self.channels.head)
             for name, angle in channel.targets.items()
         }
 
@@ -210,7 +221,7 @@ class Face:
     def pose(self) -> FacePose:
         """Every animation parameter as shown now."""
         if self._pose is None:
-            self._pose = self._mixer.pose()
+            self._pose = self.channels.pose()
         return self._pose
 
     @property
@@ -281,7 +292,7 @@ class Face:
         drawn now; ``speech``, null while the face does not speak; ``gaze_deg``, yaw and pitch; ``frame_ms``, what
         the last step took; ``messages`` understood; ``errors``, the count of malformed, unknown and rejected ones.
         """
-        emotion, pose = self._mixer.emotion, self.pose
+        emotion, pose = self.channels.emotion, self.pose
         shown = zip(emotion.target, emotion.intensities.value.tolist(), strict=True)
         return {
             "face": self.model.name,

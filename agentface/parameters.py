@@ -210,9 +210,16 @@ def muscle_names() -> tuple[str, ...]:
     return tuple(dict.fromkeys((*MUSCLES, *CONTRACTIONS)))
 
 
-def check_angle(name: str, degrees: Any) -> float:
-    """The angle of a parameter such as ``gaze_yaw`` in radians, given in degrees; raises InvalidValueError."""
-    return math.radians(check_range(f"{name}_deg", degrees, *parameter(name).bounds))
+@cache
+def parameter_names() -> tuple[str, ...]:
+    """The names that a parameter is known by: muscles without side, all parameters, and angles that end in ``_deg``."""
+    angles = (f"{known.name}_deg" for known in PARAMETERS if known.unit == "rad")
+    return tuple(dict.fromkeys((*MUSCLES, *NAMES, *angles)))
+
+
+def check_degrees(name: str, degrees: Any) -> float:
+    """``degrees`` as a float in the range of an angle such as ``gaze_yaw``; raises InvalidValueError."""
+    return check_range(f"{name}_deg", degrees, *parameter(name).bounds)
 
 
 def check_pose(values: Floats) -> None:

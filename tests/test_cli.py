@@ -78,6 +78,22 @@ def test_render_is_what_face_render_gives(tmp_path):
     assert off.mean() < 0.001
 
 
+@pytest.mark.gl
+def test_render_reaches_what_is_no_muscle_and_knows_neutral(tmp_path):
+    plain, same, turned, alike = (tmp_path / f"{name}.png" for name in ("plain", "same", "turned", "alike"))
+    small = ("--size", "96x96", "-o")
+    for path, options in (
+        (plain, ()),
+        (same, ("--emotion", "neutral=1")),
+        (turned, ("--parameter", "head_yaw_deg=30,gaze_pitch=0.2", "--parameter", "mentalis_l=0.5")),
+        (alike, ("--parameter", "gaze_pitch=0.2,head_yaw=0.5235988,mentalis_l=0.5")),
+    ):
+        assert call("render", *options, *small, path).exit_code == 0
+    assert plain.read_bytes() == same.read_bytes()
+    assert turned.read_bytes() == alike.read_bytes()
+    assert (pixels(turned) != pixels(plain)).any()
+
+
 @pytest.mark.parametrize(
     ("options", "message"),
     [
@@ -87,6 +103,9 @@ def test_render_is_what_face_render_gives(tmp_path):
         (["--muscle", "biceps=0.5"], "biceps"),
         (["--gaze", "80,0"], "gaze_yaw_deg"),
         (["--jaw", "2"], "jaw_open"),
+        (["--parameter", "head_yow=0.5"], "head_yaw"),
+        (["--parameter", "head_yaw_deg=90"], "-80..80"),
+        (["--emotion", "neutral=2"], "0..1"),
         (["--face", "nobody"], "known: amber, onyx"),
         (["--deformer", "jelly"], "known: geometric"),
     ],

@@ -20,6 +20,7 @@ LAYERS = (
     ("mesh",),
     ("head",),
     ("emotion", "motion", "deform", "tissue", "mpeg4"),
+    ("requests",),
     ("face",),
     ("live",),
     ("io", "view"),

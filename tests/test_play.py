@@ -176,13 +176,13 @@ import sys
 from agentface.cli import cli
 from agentface.face import Face
 
-set_emotion = Face.set_emotion
+apply = Face.apply
 
-def told(face, state, fade):
-    print({name: level for name, level in state.items() if level}, fade, flush=True)
-    set_emotion(face, state, fade=fade)
+def told(face, request):
+    print({name: level for name, level in request.state.items() if level}, request.fade, flush=True)
+    apply(face, request)
 
-Face.set_emotion = told
+Face.apply = told
 cli(["play", *sys.argv[1:]])
 """
 

@@ -102,6 +102,8 @@ def _score(document: Path) -> Score:
 
 def _follower(face: Face, score: Score) -> Callable[[float], None]:
     """Told the time, tells the face what is new in the score."""
+    from agentface.requests import SetEmotions
+
     told = None
 
     def follow(time_s: float) -> None:
@@ -109,7 +111,7 @@ def _follower(face: Face, score: Score) -> Callable[[float], None]:
         change = score.change(time_s)
         if change is not told:
             told = change
-            face.set_emotion(change.state, fade=change.fade_s)
+            face.apply(SetEmotions(change.state, change.fade_s))
 
     return follow
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
 
@@ -18,6 +19,9 @@ from agentface.commands.options import (
     quality_option,
     size_option,
 )
+
+if TYPE_CHECKING:
+    from agentface.requests import Request
 
 
 @click.command()
@@ -37,6 +41,14 @@ from agentface.commands.options import (
     metavar="X,Y,Z",
     help="A point to look at instead: metres to the person's left, up and forward of the head's origin.",
 )
+@click.option(
+    "--parameter",
+    "parameters",
+    multiple=True,
+    callback=assignments,
+    metavar="NAME=V",
+    help="Any other parameter; an angle in radians, or in degrees as in head_yaw_deg=20.",
+)
 @click.option("--jaw", type=float, metavar="V", help="Opening of the jaw, 0..1.")
 @look_option
 @size_option
@@ -49,6 +61,7 @@ def render(
     *,
     emotions: dict[str, float],
     muscles: dict[str, float],
+    parameters: dict[str, float],
     gaze: tuple[float, float] | None,
     look_at: tuple[float, float, float] | None,
     jaw: float | None,
@@ -65,21 +78,25 @@ def render(
 
     Emotions and muscles may be given several times: --emotion happiness=0.6 --emotion surprise=0.4
     """
+    from agentface.emotion.state import EmotionState
     from agentface.io.files import check_writable
     from agentface.io.picture import check_picture_name, write_picture
+    from agentface.requests import LookAt, SetEmotions, SetGaze, SetMuscle, SetParameter
 
     if gaze is not None and look_at is not None:
         raise click.UsageError("--gaze and --look-at both say where the eyes look: give one of them")
     check_picture_name(output, alpha=alpha)
     check_writable(output)
-    shown = make_face(face, deformer, compiled=False, look=look)  # one frame does not pay for loading the compiler
-    shown.set_emotion(emotions, fade=0.0)
-    for name, contraction in muscles.items():
-        shown.set_muscle(name, contraction, fade=0.0)
+    requests: list[Request] = [SetEmotions(EmotionState.of(emotions), 0.0)]
+    requests += [SetMuscle(name, contraction, 0.0) for name, contraction in muscles.items()]
     if jaw is not None:
-        shown.set_jaw(jaw, fade=0.0)
+        requests.append(SetMuscle("jaw_open", jaw, 0.0))
     if gaze is not None:
-        shown.set_gaze(*gaze, fade=0.0)
+        requests.append(SetGaze(*gaze, fade=0.0))
     if look_at is not None:
-        shown.look_at(look_at, fade=0.0)
+        requests.append(LookAt(*look_at, fade=0.0))
+    requests += [SetParameter(name, value, 0.0) for name, value in parameters.items()]
+    shown = make_face(face, deformer, compiled=False, look=look)  # one frame does not pay for loading the compiler
+    for request in requests:
+        shown.apply(request)
     write_picture(output, shown.render(size, camera, quality, alpha=alpha))

@@ -19,22 +19,24 @@ from agentface.commands.options import (
 )
 
 if TYPE_CHECKING:
-    from agentface.conventions import Floats
+    from agentface.face import Face
     from agentface.parameters import FacePose
+    from agentface.requests import Request
 
 
 class Cell(NamedTuple):
-    """One picture: its label, what the rules make of its emotions, and the parameters held by name."""
+    """One picture: its label, and what is asked of the face."""
 
     label: str
-    felt: FacePose
-    held: dict[str, float]
+    requests: Sequence[Request]
 
-    def pose(self, gains: Floats) -> FacePose:
-        """What a face shows whose sides make ``gains (COUNT,)`` of an emotion."""
-        from agentface.parameters import FacePose
+    def pose(self, face: Face) -> FacePose:
+        """What ``face`` makes of it."""
+        from agentface.requests import Neutral
 
-        return FacePose(self.felt.array * gains).replace(self.held)
+        for request in (Neutral(0.0), *self.requests):
+            face.apply(request)
+        return face.pose
 
 
 def _levels(_: click.Context, __: click.Parameter, value: str) -> list[float]:
@@ -95,29 +97,29 @@ def sheet(
     drawn = make_face(face, deformer, compiled=len(shown) > 4, look=look)
     terminal = Console(stderr=True)
     bar = track(shown, "drawing", console=terminal, transient=True, disable=not terminal.is_terminal)
-    panels = [(drawn.render(size, camera, quality, pose=cell.pose(drawn.model.gains)), cell.label, "") for cell in bar]
+    panels = [(drawn.render(size, camera, quality, pose=cell.pose(drawn)), cell.label, "") for cell in bar]
     write_picture(output, np.asarray(contact_sheet(panels, width)))
 
 
 def _by_level(emotions: str | None, levels: Sequence[float]) -> list[Cell]:
-    from agentface.emotion.inference import default_inference
     from agentface.emotion.state import EMOTIONS, EmotionState
+    from agentface.requests import SetEmotions
 
-    infer = default_inference()
     names = [name.strip() for name in emotions.split(",")] if emotions else EMOTIONS
-    states = [(f"{name} {level:g}", EmotionState.of({name: level})) for name in names for level in levels]
-    return [Cell(label, infer.pose(state), {}) for label, state in states]
+    return [
+        Cell(f"{name} {level:g}", [SetEmotions(EmotionState.of({name: level}), 0.0)])
+        for name in names
+        for level in levels
+    ]
 
 
 def _asked(text: str) -> Cell:
     """What ``LABEL: NAME=V, ...`` asks for; without a label it is its own."""
-    from agentface.emotion.inference import default_inference
-    from agentface.emotion.state import ALIASES, EMOTIONS, EmotionState
+    from agentface.emotion.state import ALIASES, EMOTIONS, NEUTRAL, EmotionState
+    from agentface.requests import SetEmotions, SetParameter
 
     label, colon, given = text.partition(":")
     values = read_assignments([given if colon else text])
-    felt = {name: value for name, value in values.items() if name.lower() in (*EMOTIONS, *ALIASES)}
-    held = {name: value for name, value in values.items() if name not in felt}
-    cell = Cell(label.strip(), default_inference().pose(EmotionState.of(felt)), held)
-    cell.felt.replace(held)  # a wrong name is told before anything is drawn
-    return cell
+    felt = {name: value for name, value in values.items() if name.lower() in (*EMOTIONS, *ALIASES, NEUTRAL)}
+    held = [SetParameter(name, value, 0.0) for name, value in values.items() if name not in felt]
+    return Cell(label.strip(), [SetEmotions(EmotionState.of(felt), 0.0), *held])

@@ -24,15 +24,29 @@ _ALIASES: dict[str, tuple[str, ...]] = {
 }
 ALIASES: dict[str, str] = {alias: emotion for emotion, names in _ALIASES.items() for alias in names}
 """Other words for an emotion, and the emotion they mean."""
+NEUTRAL = "neutral"
+"""What lets go of the emotions, wherever one is named: at ``v`` it leaves each of the others at most ``1 - v``."""
 
 
 def canonical(name: object) -> str:
     """The emotion that ``name`` means, whatever its case; raises UnknownNameError."""
-    word = name.strip().lower() if isinstance(name, str) else ""
-    emotion = ALIASES.get(word, word)
+    emotion = _plain(name)
     if emotion not in EMOTIONS:
         raise UnknownNameError("emotion", name, (*EMOTIONS, *ALIASES))
     return emotion
+
+
+def canonical_or_neutral(name: object) -> str:
+    """As :func:`canonical`; also knows ``neutral``."""
+    emotion = _plain(name)
+    if emotion not in (*EMOTIONS, NEUTRAL):
+        raise UnknownNameError("emotion", name, (*EMOTIONS, NEUTRAL, *ALIASES))
+    return emotion
+
+
+def _plain(name: object) -> str:
+    word = name.strip().lower() if isinstance(name, str) else ""
+    return ALIASES.get(word, word)
 
 
 class EmotionState(NamedArray):
@@ -56,6 +70,8 @@ class EmotionState(NamedArray):
     def of(cls, intensities: Mapping[str, float] | None = None, /, **named: float) -> EmotionState:
         """A state from names: ``EmotionState.of({"joy": 0.6})`` or ``EmotionState.of(joy=0.6)``; the rest are 0.
 
+        ``neutral`` may be among them: it leaves each emotion at most 1 minus its intensity.
+
         Raises UnknownNameError for a name, InvalidValueError for a value outside 0..1 or an emotion named twice.
         """
         if isinstance(intensities, EmotionState) and not named:
@@ -64,11 +80,12 @@ class EmotionState(NamedArray):
             raise InvalidValueError("EmotionState.of", "a mapping from emotions to intensities", intensities)
         values: dict[str, float] = {}
         for name, value in (*(intensities or {}).items(), *named.items()):
-            emotion = canonical(name)
+            emotion = canonical_or_neutral(name)
             if emotion in values:
                 raise InvalidValueError(emotion, "each emotion once", name, "two of the names mean the same emotion")
             values[emotion] = check_fraction(emotion, value)
-        return cls([values.get(emotion, 0.0) for emotion in EMOTIONS])
+        most = 1.0 - values.pop(NEUTRAL, 0.0)
+        return cls([min(values.get(emotion, 0.0), most) for emotion in EMOTIONS])
 
     def as_dict(self) -> dict[str, float]:
         """All six intensities by name."""

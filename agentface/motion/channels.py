@@ -89,7 +89,7 @@ class MuscleChannel:
         self._value.move(contraction, fade, places)
         self._weight.move(1.0, fade, places)
 
-    def release(self, name: str | None, fade: float) -> None:
+    def release(self, fade: float, name: str | None = None) -> None:
         """Give one muscle, or all, back to the other channels."""
         self._weight.move(0.0, fade, slice(None) if name is None else np.array(indices_of(name)))
 
@@ -121,6 +121,10 @@ class TurnChannel:
     def turn(self, angles: tuple[float, ...], fade: float) -> None:
         """Turn to ``angles`` in radians."""
         self.angles.move(angles, fade)
+
+    def turn_one(self, name: str, angle: float, fade: float) -> None:
+        """Turn by one parameter to ``angle`` in radians, the others going where they went."""
+        self.angles.move(angle, fade, self._places == indices_of(name)[0])
 
     @property
     def targets(self) -> dict[str, float]:

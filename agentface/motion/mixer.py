@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from agentface.conventions import Floats
+from agentface.emotion.state import EmotionState
 from agentface.motion.blink import BlinkChannel
 from agentface.motion.channels import Contractor, EmotionChannel, MuscleChannel, TurnChannel
 from agentface.parameters import COUNT, FacePose
@@ -30,6 +31,13 @@ class Mixer:
         """Let ``dt`` seconds pass in every channel."""
         for channel in self._channels:
             channel.advance(dt)
+
+    def release(self, fade: float) -> None:
+        """Let go of everything within ``fade`` seconds; a blink runs to its end."""
+        self.emotion.change(EmotionState(), fade, None)
+        self.muscles.release(fade)
+        self.gaze.turn((0.0, 0.0, 0.0), fade)
+        self.head.turn((0.0, 0.0, 0.0), fade)
 
     def pose(self) -> FacePose:
         """The parameters shown now."""

@@ -6,9 +6,10 @@ import math
 from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING
 
-from agentface.emotion.state import EMOTIONS
+from agentface.emotion.state import EMOTIONS, EmotionState
 from agentface.errors import UnknownNameError
-from agentface.parameters import CONTRACTIONS, parameter
+from agentface.parameters import CONTRACTIONS, PARAMETERS, parameter
+from agentface.requests import Blink, Request, SetEmotion, SetEmotions, SetMuscle, SetParameter
 from agentface.view.camera import Camera, named_view
 from agentface.view.gl.quality import QUALITIES
 from agentface.window.capture import Capture
@@ -27,7 +28,7 @@ _ZOOM_PER_NOTCH = 1.1
 _FARTHEST_PAN_M = 0.3
 _VIEW_KEYS = {"F": "front", "T": "three-quarter", "P": "profile"}
 
-ANGLES = ("gaze_yaw", "gaze_pitch", "head_yaw", "head_pitch", "head_roll")
+ANGLES = tuple(known.name for known in PARAMETERS if known.unit == "rad")
 
 
 class Controls:
@@ -147,21 +148,23 @@ class Controls:
         return f"{self.face.model.name} - {', '.join(felt) or 'neutral'}{filming} - H for help"
 
     def _apply(self, values: Mapping[str, float | None], fade: float) -> None:
-        face = self.face
-        emotions = {name: value for name, value in values.items() if name in EMOTIONS and value is not None}
-        if len(emotions) == len(EMOTIONS):
-            face.set_emotion(emotions, fade=fade)
-        else:
-            for name, value in emotions.items():
-                face.set_emotion(name, value, fade=fade)
-        for name in values:
-            if name in CONTRACTIONS:
-                face.set_muscle(name, values[name], fade=fade)
-        angles = {name: value for name, value in values.items() if name in ANGLES and value is not None}
-        for part, turn in (("gaze", face.set_gaze), ("head", face.set_head)):
-            if any(name.startswith(part) for name in angles):
-                turned = {**face.turned_deg, **angles}
-                turn(*(turned[name] for name in ANGLES if name.startswith(part)), fade=fade)
+        for request in requests_of(values, fade):
+            self.face.apply(request)
+
+
+def requests_of(values: Mapping[str, float | None], fade: float) -> list[Request]:
+    """What to ask of a face for it to show values named as those of :class:`Controls`."""
+    emotions = {name: value for name, value in values.items() if name in EMOTIONS and value is not None}
+    whole = len(emotions) == len(EMOTIONS)
+    requests: list[Request] = [SetEmotions(EmotionState.of(emotions), fade)] if whole else []
+    for name, value in values.items():
+        if name in CONTRACTIONS:
+            requests.append(SetMuscle(name, value, fade))
+        elif name in ANGLES:
+            requests.append(SetParameter(f"{name}_deg", value, fade))
+        elif value is not None and not whole:
+            requests.append(SetEmotion(name, value, fade))
+    return requests
 
 
 def bounds(name: str) -> tuple[float, float]:
@@ -197,7 +200,7 @@ _EMOTION_KEYS = {str(number): emotion for number, emotion in enumerate(EMOTIONS,
 _ACTIONS: dict[str, Callable[[Controls], object]] = {
     "0": Controls.reset,
     "Backspace": Controls.reset,
-    "Space": lambda controls: controls.face.blink(),
+    "Space": lambda controls: controls.face.apply(Blink()),
     "Q": _toggle_quality,
     "S": Controls.picture,
     "R": Controls.film,

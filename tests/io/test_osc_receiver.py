@@ -9,9 +9,11 @@ from osc_bytes import bundle, message
 
 from agentface import EmotionState, Face
 from agentface.clock import ManualClock
+from agentface.errors import InvalidValueError, UnknownNameError
 from agentface.io.osc.codec import decode
 from agentface.io.osc.receiver import ANSWERS_A_SECOND, ANSWERS_AT_ONCE, Receiver
 from agentface.io.osc.schedule import FURTHEST_S, MOST
+from agentface.requests import SetMuscle
 from tests.heads import head_model
 
 ME = ("127.0.0.1", 1)
@@ -90,6 +92,84 @@ def test_muscle_gaze_head_blink_and_whole_numbers(desk):
     assert desk.face.traffic.messages == 5
 
 
+def test_parameters_and_points_reach_what_is_no_muscle(desk):
+    desk.take(
+        message("/agentface/parameter", "sf", "head_roll", 0.25),
+        message("/agentface/parameter", "sf", "head_pitch_deg", -15.0),
+        message("/agentface/parameter", "sf", "mentalis", 0.5),
+        message("/agentface/look_at", "ffff", 0.0, 0.0, 1.0, 0.0),
+    )
+    desk.face.step(1.0)
+    pose = desk.face.pose
+    assert (pose["head_roll"], pose["mentalis_l"], pose["mentalis_r"]) == (0.25, 0.5, 0.5)
+    assert math.degrees(pose["head_pitch"]) == pytest.approx(-15, abs=1e-4)
+    assert pose["gaze_vergence"] > 0.01
+    assert not desk.answers
+
+
+def test_what_only_the_face_can_refuse_is_answered_too(desk):
+    desk.take(message("/agentface/look_at", "fff", 0.0, 0.0, -1.0))
+    (answer,) = desk.said()
+    assert answer.arguments[0] == "/agentface/look_at"
+    assert "in front of the eyes" in answer.arguments[1]
+    assert desk.face.traffic.errors == {"malformed": 0, "unknown": 0, "rejected": 1}
+    assert desk.face.traffic.messages == 0
+
+
+def test_neutral_as_an_emotion_keeps_the_muscles(desk):
+    desk.take(message("/agentface/emotion", "sf", "joy", 0.5), message("/agentface/muscle", "sf", "risorius", 0.5))
+    desk.take(message("/agentface/emotion", "sf", "neutral", 1.0))
+    assert desk.state == EmotionState()
+    assert desk.face.held
+    desk.take(message("/agentface/emotions", "sfsf", "happy", 0.75, "neutral", 0.25))
+    assert desk.state == EmotionState.of(happiness=0.75)
+
+
+def test_a_program_adds_an_address_of_its_own(desk):
+    def wink(arguments):
+        (side,) = arguments
+        return SetMuscle(f"orbicularis_oculi_palpebralis_{side}", 1.0, 0.0)
+
+    desk.receiver.addresses.add("/avatar/wink", wink)
+    desk.take(message("/avatar/wink", "s", "l"))
+    assert desk.face.pose["orbicularis_oculi_palpebralis_l"] == 1.0
+    desk.take(bundle(message("/avatar/wink", "s", "r"), date=desk.clock.date() + 1))
+    assert desk.face.pose["orbicularis_oculi_palpebralis_r"] == 0.0
+    desk.clock.sleep(1.0)
+    desk.take()
+    assert desk.face.pose["orbicularis_oculi_palpebralis_r"] == 1.0
+    desk.take(message("/avatar/wink", "s", "x"), message("/avatar/wink"))
+    assert [answer.arguments[0] for answer in desk.said()] == ["/avatar/wink", "/avatar/wink"]
+    assert desk.face.traffic.errors == {"malformed": 0, "unknown": 0, "rejected": 2}
+    desk.receiver.addresses.remove("/avatar/wink")
+    desk.take(message("/avatar/wink", "s", "l"))
+    assert desk.face.traffic.errors["unknown"] == 1
+
+
+def test_an_added_address_may_do_its_own_work(desk):
+    taken = []
+    desk.receiver.addresses.add("/avatar/note", taken.append)
+    desk.take(message("/avatar/note", "if", 3, 0.5))
+    assert taken == [(3, 0.5)]
+    assert desk.face.traffic.messages == 1
+
+
+@pytest.mark.parametrize(
+    "address", ["", "avatar", "/", "/a//b", "/a/", "/a b", "/a*", "/{a}", "/ä", None, "/agentface/blink",
+                "/agentface/amber/blink", "/agentface/status", "/taken"],
+)  # fmt: skip
+def test_a_wrong_or_taken_address_is_not_added(desk, address):
+    desk.receiver.addresses.add("/taken", lambda arguments: None)
+    with pytest.raises(InvalidValueError, match="address"):
+        desk.receiver.addresses.add(address, lambda arguments: None)
+
+
+def test_only_what_was_added_is_removed(desk):
+    for address in ("/agentface/blink", "/none"):
+        with pytest.raises(UnknownNameError):
+            desk.receiver.addresses.remove(address)
+
+
 def test_neutral_takes_its_fade(desk):
     desk.take(message("/agentface/emotion", "sff", "joy", 1.0, 0.0), message("/agentface/neutral", "f", 2.0))
     desk.face.step(1.0)
@@ -121,6 +201,12 @@ def test_neutral_takes_its_fade(desk):
         (message("/agentface/muscle", "sf", "gaze_yaw", 0.5), "gaze_yaw"),
         (message("/agentface/muscle", "sf", "risorius", 7.0), "0..1"),
         (message("/agentface/muscle", "fs", 0.5, "risorius"), "muscle"),
+        (message("/agentface/parameter", "sf", "head_yow", 0.5), "head_yaw"),
+        (message("/agentface/parameter", "sf", "head_yaw", 2.0), "-1.39"),
+        (message("/agentface/parameter", "sf", "head_yaw_deg", 81.0), "-80..80"),
+        (message("/agentface/parameter", "s", "head_yaw"), "name value"),
+        (message("/agentface/look_at", "ff", 0, 0), "x y z"),
+        (message("/agentface/look_at", "fff", 0, 0, math.inf), "finite"),
         (message("/agentface/gaze", "ff", 80, 0), "-50..50"),
         (message("/agentface/gaze", "f", 80), "yaw_deg"),
         (message("/agentface/head", "ff", 1, 2), "roll"),

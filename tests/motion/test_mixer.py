@@ -81,7 +81,7 @@ def test_a_muscle_set_by_name_wins_and_can_be_given_back(mixer):
     mixer.advance(0.1)
     assert mixer.pose()["zygomaticus_major_l"] == pytest.approx(0.1)
     assert mixer.pose()["zygomaticus_major_r"] == pytest.approx(smile)
-    mixer.muscles.release(None, 0.2)
+    mixer.muscles.release(0.2)
     mixer.advance(0.2)
     assert mixer.pose()["zygomaticus_major_l"] == pytest.approx(smile)
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from agentface.clock import Clock
 
 
-class Allowance:
+class RateLimit:
     """A token bucket: so many at once, and then so many a second."""
 
     def __init__(self, clock: Clock, at_once: float, a_second: float) -> None:

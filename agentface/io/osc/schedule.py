@@ -1,23 +1,36 @@
-"""Commands of bundles that are to be played later, in their order."""
+"""Requests of bundles that are to be played later, in their order."""
 
 from __future__ import annotations
 
 import heapq
+from dataclasses import dataclass
 from itertools import count
+from typing import Any, TypeAlias
 
-from agentface.io.osc.commands import Command
+from agentface.requests import Request
 
+Sender: TypeAlias = tuple[Any, ...]
+"""The address of a socket."""
 FURTHEST_S = 600.0
 """A bundle may lie at most so many seconds ahead."""
 MOST = 4096
-"""So many commands may wait."""
+"""So many requests may wait."""
 
 
-class Agenda:
-    """A bounded heap of commands by their date."""
+@dataclass(frozen=True, slots=True)
+class Waiting:
+    """A request and where it came from: whom to answer should the face refuse it."""
+
+    request: Request
+    sender: Sender
+    address: str
+
+
+class Schedule:
+    """A bounded heap of requests by their date."""
 
     def __init__(self) -> None:
-        self._heap: list[tuple[float, int, Command]] = []
+        self._heap: list[tuple[float, int, Waiting]] = []
         self._order = count()
 
     def __len__(self) -> int:
@@ -28,13 +41,13 @@ class Agenda:
         """Whether nothing more fits."""
         return len(self._heap) >= MOST
 
-    def add(self, date: float, command: Command) -> None:
-        """Keep a command until ``date``, seconds since 1970."""
-        heapq.heappush(self._heap, (date, next(self._order), command))
+    def add(self, date: float, waiting: Waiting) -> None:
+        """Keep a request until ``date``, seconds since 1970."""
+        heapq.heappush(self._heap, (date, next(self._order), waiting))
 
-    def due(self, date: float) -> list[Command]:
+    def due(self, date: float) -> list[Waiting]:
         """Take out everything whose time has come, the earliest first."""
-        commands = []
+        requests = []
         while self._heap and self._heap[0][0] <= date:
-            commands.append(heapq.heappop(self._heap)[2])
-        return commands
+            requests.append(heapq.heappop(self._heap)[2])
+        return requests

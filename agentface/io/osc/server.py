@@ -14,7 +14,8 @@ from agentface.clock import Clock, SystemClock
 from agentface.errors import ServerError
 from agentface.face import Face
 from agentface.io.osc.codec import LARGEST_DATAGRAM
-from agentface.io.osc.receiver import Receiver, Sender
+from agentface.io.osc.receiver import Receiver
+from agentface.io.osc.schedule import Sender
 
 DEFAULT_HOST, DEFAULT_PORT = "127.0.0.1", 7400
 MOST_WAITING = 1024
@@ -32,9 +33,10 @@ class OscServer:
         face: what the messages are for.
         host: the address to listen on; the default takes messages from this machine alone.
         port: 0 for any free one.
-        clock: dates bundles and the allowance of answers.
+        clock: dates bundles and limits the rate of answers.
 
-    Raises ServerError when the address cannot be had.
+    ``addresses`` are what it understands; a program may add its own. Raises ServerError when the address of the
+    machine cannot be had.
     """
 
     def __init__(
@@ -44,6 +46,7 @@ class OscServer:
         self.host, self.port = self._socket.getsockname()[:2]
         self._face = face
         self._receiver = Receiver(face, self._reply, clock or SystemClock())
+        self.addresses = self._receiver.addresses
         self._waiting: deque[tuple[bytes, Sender]] = deque(maxlen=MOST_WAITING)
         self._closed = threading.Event()
         self._thread = threading.Thread(target=self._empty_socket, name="agentface-osc", daemon=True)

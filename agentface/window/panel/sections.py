@@ -88,11 +88,11 @@ def gaze(controls: Controls) -> None:
     if imgui.is_item_active():
         mouse = imgui.get_mouse_pos()
         right, up = (mouse.x - middle[0]) / half[0], (middle[1] - mouse.y) / half[1]
-        controls.change({"gaze_yaw": right * widest, "gaze_pitch": up * highest}, "gaze")
+        controls.change({"gaze_yaw": right * widest, "gaze_pitch": up * highest, "gaze_vergence": 0.0}, "gaze")
     if imgui.is_item_deactivated():
         controls.settle()
     if imgui.is_item_clicked(imgui.MouseButton_.right):
-        controls.change({"gaze_yaw": 0.0, "gaze_pitch": 0.0})
+        controls.change({"gaze_yaw": 0.0, "gaze_pitch": 0.0, "gaze_vergence": 0.0})
     draw = imgui.get_window_draw_list()
     frame, line, dot = map(
         imgui.get_color_u32, (int(imgui.Col_.frame_bg), int(imgui.Col_.border), int(imgui.Col_.slider_grab_active))
