@@ -17,7 +17,7 @@ from agentface.deform.protocol import DEFAULT_DEFORMER, make_deformer
 from agentface.emotion.explanation import Explanation
 from agentface.emotion.inference import default_inference
 from agentface.emotion.state import EMOTIONS, NEUTRAL, EmotionState, canonical_or_neutral
-from agentface.errors import InvalidValueError, UnknownNameError
+from agentface.errors import InvalidValueError
 from agentface.head.model import HeadModel, load_model
 from agentface.motion.mixer import Mixer
 from agentface.parameters import CONTRACTIONS, MUSCLES, FacePose

@@ -327,7 +327,7 @@ def _check_parameter(name: Any, value: Any) -> tuple[str, float | None]:
     plain = str(name).removesuffix(_DEGREES)
     if value is None:
         return plain, None
-    if plain != name:
-        return plain, math.radians(check_degrees(plain, value))
     meant = PARAMETERS[indices_of(plain)[0]]
-    return plain, check_range(plain, value, meant.low, meant.high)
+    if plain == name:
+        return plain, check_range(plain, value, meant.low, meant.high)
+    return plain, min(max(math.radians(check_degrees(plain, value)), meant.low), meant.high)

@@ -128,6 +128,15 @@ def test_single_muscles_jaw_gaze_and_head_reach_the_pose(face):
     assert face.pose["corrugator_supercilii_l"] == 0.0
 
 
+@pytest.mark.parametrize("sign", [-1, 1])
+def test_the_furthest_turns_are_taken_and_drawn(face, sign):
+    face.set_gaze(sign * 50, sign * 40, fade=0.0)
+    face.set_head(sign * 80, sign * 60, sign * 50, fade=0.0)
+    face.step(0.1)
+    turned = [face.turned_deg[name] for name in ("gaze_yaw", "gaze_pitch", "head_yaw", "head_pitch", "head_roll")]
+    assert turned == [sign * limit for limit in (50, 40, 80, 60, 50)]
+
+
 def test_the_pose_is_fresh_without_a_step(face):
     face.set_emotion({"disgust": 1.0}, fade=0.0)
     assert face.pose["levator_labii_superioris_alaeque_nasi_l"] > 0.5

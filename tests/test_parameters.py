@@ -91,7 +91,11 @@ def test_a_signed_or_turned_parameter_is_no_muscle():
     for name in ("gaze_yaw", "gaze_pitch", "gaze_vergence", "head_yaw", "head_pitch", "head_roll"):
         assert name not in parameters.muscle_names()
         assert not parameters.parameter(name).contracts
-    assert parameters.parameter("gaze_yaw").bounds == (-50.0, 50.0)
+    bounds = {known.name: known.bounds for known in PARAMETERS if not known.contracts}
+    assert bounds == {
+        "gaze_yaw": (-50, 50), "gaze_pitch": (-40, 40), "gaze_vergence": (-10, 25),
+        "head_yaw": (-80, 80), "head_pitch": (-60, 60), "head_roll": (-50, 50),
+    }  # fmt: skip
     assert "jaw_open" in parameters.muscle_names()
 
 

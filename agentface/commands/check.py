@@ -86,9 +86,15 @@ def _faults_of(read: Callable[[], object]) -> list[Fault]:
 
 def _rule_readers() -> dict[str, _Reader]:
     from agentface.emotion.tables import load_blends, load_emotions
+    from agentface.motion.conflicts import load_conflicts
     from agentface.studies.calibration.action_units import load_action_units
 
-    return {"emotions.yaml": load_emotions, "blends.yaml": load_blends, "action_units.yaml": load_action_units}
+    return {
+        "emotions.yaml": load_emotions,
+        "blends.yaml": load_blends,
+        "action_units.yaml": load_action_units,
+        "conflicts.yaml": load_conflicts,
+    }
 
 
 def _face_readers() -> dict[str, _Reader]:

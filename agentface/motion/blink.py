@@ -8,19 +8,19 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
-
-from agentface.conventions import Doubles
+from agentface.conventions import SIDES, Doubles
 from agentface.motion.envelope import Envelope
-from agentface.parameters import indices_of
 
 CLOSE_S, HOLD_S, OPEN_S = 0.08, 0.03, 0.17
-_CLOSER = np.array(indices_of("orbicularis_oculi_palpebralis"))
-_LEVATOR = np.array(indices_of("levator_palpebrae"))
+_CLOSER, _LEVATOR = (
+    tuple(f"{muscle}_{side}" for side in SIDES) for muscle in ("orbicularis_oculi_palpebralis", "levator_palpebrae")
+)
 
 
 class BlinkChannel:
-    """How far the lids are closed by a blink, 0..1."""
+    """How far the lids are closed by a blink, 0..1: the closer contracts so far, and the levator rests as much."""
+
+    names = (*_CLOSER, *_LEVATOR)
 
     def __init__(self) -> None:
         self._closure = Envelope(1)
@@ -41,8 +41,14 @@ class BlinkChannel:
         self._left -= dt
         self._closure.advance(dt)
 
-    def write(self, values: Doubles) -> None:
-        """Close the lids in ``values`` ``(COUNT,)``."""
+    def release(self, fade: float) -> None:
+        """Nothing: a blink that is on its way ends by itself."""
+
+    def write(self, values: Doubles, weights: Doubles) -> bool:
+        """How far the closer closes, and what is left to the levator."""
+        if self._closure.resting:
+            return False
         closure = self._closure.value[0]
-        values[_CLOSER] = np.maximum(values[_CLOSER], closure)
-        values[_LEVATOR] *= 1.0 - closure
+        values[: len(_CLOSER)] = closure
+        values[len(_CLOSER) :] = 1.0 - closure
+        return True

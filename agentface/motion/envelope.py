@@ -38,12 +38,17 @@ class Envelope:
         self.value, self.velocity, self.target = (np.zeros(size) for _ in range(3))
         self._start, self._speed = np.zeros(size), np.zeros(size)
         self._travel, self._brake, self._elapsed = np.ones(size), np.ones(size), np.ones(size)
-        self._settled = True
+        self._settled = self._resting = True
 
     @property
     def settled(self) -> bool:
         """Whether every value is on its target."""
         return self._settled
+
+    @property
+    def resting(self) -> bool:
+        """Whether every value is 0 and stays there."""
+        return self._resting
 
     def move(self, target: npt.ArrayLike, fade: float, where: Any = slice(None)) -> None:
         """Send the values at ``where`` to ``target`` within ``fade`` seconds; 0 puts them there at once.
@@ -64,7 +69,7 @@ class Envelope:
         self._speed[places] = self.velocity[places]
         self._travel[places], self._brake[places] = self._durations(places, max(fade, 1e-6))
         self._elapsed[places] = 0.0
-        self._settled = bool((self.value == self.target).all() and not self.velocity.any())
+        self._settle((self.value == self.target).all() and not self.velocity.any())
 
     def advance(self, dt: float) -> Doubles:
         """Let ``dt`` seconds pass; returns ``value``."""
@@ -82,8 +87,12 @@ class Envelope:
         there = (u > _ALMOST) & (w > _ALMOST)
         self.velocity[there] = 0.0
         self.value = np.where(there, self.target, np.clip(value, self.low, self.high))
-        self._settled = bool(there.all())
+        self._settle(there.all())
         return self.value
+
+    def _settle(self, there: Any) -> None:
+        self._settled = bool(there)
+        self._resting = self._settled and not self.target.any()
 
     def _durations(self, places: npt.NDArray[np.intp], fade: float) -> tuple[Doubles, Doubles]:
         # Two ways to take over a speed: shorten the move until it does not overshoot, or brake beside it and

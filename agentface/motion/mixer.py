@@ -1,47 +1,205 @@
-"""The channels together: one pose of what all of them ask for."""
+"""The channels together: one pose of what all of them want."""
 
 from __future__ import annotations
 
+from collections.abc import Iterator, MutableMapping
+from dataclasses import replace
+from typing import TypeVar
+
 import numpy as np
+import numpy.typing as npt
 
-from agentface.conventions import Floats
-from agentface.emotion.state import EmotionState
+from agentface.conventions import Doubles, Floats
+from agentface.errors import InvalidValueError, UnknownNameError
 from agentface.motion.blink import BlinkChannel
-from agentface.motion.channels import Contractor, EmotionChannel, MuscleChannel, TurnChannel
-from agentface.parameters import COUNT, FacePose
+from agentface.motion.channel import Channel, Rank
+from agentface.motion.conflicts import Conflicts, default_conflicts
+from agentface.motion.emotion import EmotionChannel, EmotionRules
+from agentface.motion.muscles import MuscleChannel
+from agentface.motion.turns import TurnChannel
+from agentface.parameters import COUNT, HIGH, LOW, NEUTRAL, WAYS, FacePose, Way, parameter
+
+_Channel = TypeVar("_Channel", bound=Channel)
+_NEUTRAL, _LOW, _HIGH = (limits.astype(np.float64) for limits in (NEUTRAL, LOW, HIGH))
 
 
-class Mixer:
-    """Channels in the order in which they are written.
+class _Layer:
+    """A channel with its rank; ``wanted`` is what it wants now, values above weights."""
 
-    Contractions of different channels merge by their maximum: two causes do not contract a muscle twice. A
-    muscle that is set by name comes last and wins over all of them. Gaze and head have parameters of their own.
-    ``gains (COUNT,)`` is what the sides of the face make of what an emotion asks of both.
+    def __init__(self, channel: Channel, rank: Rank) -> None:
+        self.channel, self.rank = channel, rank
+        self.names = tuple(channel.names)
+        self.wanted: Doubles = np.zeros((2, len(self.names)))
+        self.values, self.weights = self.wanted
+        self.weights[:] = 1.0
+        self._ones = self.weights.tobytes()
+
+    def write(self) -> bytes:
+        """Ask the channel. The bytes tell what it wants from what it wanted earlier; none for nothing."""
+        if self.channel.write(self.values, self.weights) is False:
+            return b""
+        return self.wanted.tobytes()
+
+    def is_whole(self, wanted: bytes) -> bool:
+        """Whether all weights are 1 in what :meth:`write` gave."""
+        return wanted.endswith(self._ones)
+
+
+class _Step:
+    """Those parameters of one layer that are blended at once: their places in a pose, and in the layer."""
+
+    def __init__(self, number: int, layer: _Layer, way: Way, rows: list[int]) -> None:
+        self.number, self._layer, self._way = number, layer, way
+        self._places = _compact([parameter(layer.names[row]).index for row in rows])
+        self._rows = _compact(rows)
+
+    def blend(self, values: Doubles, wants: bytes) -> None:
+        """Blend what the layer ``wants`` over ``values (COUNT,)``: ``(1 - w) v + w f(v)`` for a weight of w."""
+        below, wanted = values[self._places], self._layer.values[self._rows]
+        if self._way == "max":
+            wanted = np.maximum(below, wanted)
+        elif self._way == "add":
+            wanted = below + wanted
+        elif self._way == "scale":
+            wanted = below * wanted
+        if not self._layer.is_whole(wants):
+            weights = self._layer.weights[self._rows]
+            wanted = (1.0 - weights) * below + weights * wanted
+        values[self._places] = wanted
+
+
+def _compact(places: list[int]) -> slice | npt.NDArray[np.intp]:
+    """Places as a slice where they follow one another: numpy then copies nothing."""
+    first, last = places[0], places[-1]
+    return slice(first, last + 1) if places == list(range(first, last + 1)) else np.array(places, np.intp)
+
+
+class Mixer(MutableMapping[str, Channel]):
+    """Channels by name; each is blended over those of lower priority, by the ways and priorities of its rank.
+
+    The face's own are ``emotion``, ``gaze``, ``head``, ``blink`` and ``muscles``, also to be had as attributes; they
+    stay. A program adds others, ``mixer["breath"] = channel`` or :meth:`add`, and deletes them again; a face shows it
+    from its next step on.
+
+    Args:
+        rules: what makes contractions of emotions.
+        gains: ``(COUNT,)``, what each side of the face makes of what an emotion wants of both; 1 when None.
+        conflicts: the channels' ranks; those of ``rules/conflicts.yaml`` when None.
     """
 
-    def __init__(self, inference: Contractor, gains: Floats | None = None) -> None:
-        self.emotion = EmotionChannel(inference, gains)
-        self.blink = BlinkChannel()
-        self.muscles = MuscleChannel()
-        self.gaze = TurnChannel("gaze")
-        self.head = TurnChannel("head")
-        self._channels = (self.emotion, self.blink, self.muscles, self.gaze, self.head)
+    def __init__(self, rules: EmotionRules, gains: Floats | None = None, conflicts: Conflicts | None = None) -> None:
+        self._conflicts = conflicts or default_conflicts()
+        self._layers: dict[str, _Layer] = {}
+        self._steps: tuple[_Step, ...] = ()
+        self._values: Doubles = np.zeros(COUNT)
+        self._wanted: tuple[bytes, ...] | None = None
+        self._pose = FacePose()
+        self.emotion = self._own("emotion", EmotionChannel(rules, gains))
+        self.gaze = self._own("gaze", TurnChannel("gaze"))
+        self.head = self._own("head", TurnChannel("head"))
+        self.blink = self._own("blink", BlinkChannel())
+        self.muscles = self._own("muscles", MuscleChannel())
+        self._fixed = frozenset(self._layers)
+
+    def add(self, name: str, channel: Channel, *, priority: int | None = None, way: Way | None = None) -> None:
+        """Add a channel, in place of the one that a program has added under this name.
+
+        Without ``priority`` and ``way`` it has those that ``rules/conflicts.yaml`` gives to others. Raises
+        InvalidValueError and UnknownNameError, also for what the channel says of itself.
+        """
+        if not (isinstance(name, str) and name) or name in self._fixed:
+            raise InvalidValueError("channel", "a name that is not one of the face's own", name)
+        if priority is not None and priority not in range(101):
+            raise InvalidValueError(f"channel {name}: priority", "a whole number in 0..100", priority)
+        if way is not None and way not in WAYS:
+            raise UnknownNameError("way", way, WAYS)
+        rank = self._conflicts.rank(name)
+        if priority is not None:
+            rank = replace(rank, priority=priority, priorities={})
+        if way is not None:
+            rank = replace(rank, way=way, ways={})
+        self._put(name, channel, rank)
 
     def advance(self, dt: float) -> None:
         """Let ``dt`` seconds pass in every channel."""
-        for channel in self._channels:
-            channel.advance(dt)
+        for layer in self._layers.values():
+            layer.channel.advance(dt)
 
     def release(self, fade: float) -> None:
-        """Let go of everything within ``fade`` seconds; a blink runs to its end."""
-        self.emotion.change(EmotionState(), fade, None)
-        self.muscles.release(fade)
-        self.gaze.turn((0.0, 0.0, 0.0), fade)
-        self.head.turn((0.0, 0.0, 0.0), fade)
+        """Have every channel let go within ``fade`` seconds."""
+        for layer in self._layers.values():
+            layer.channel.release(fade)
 
     def pose(self) -> FacePose:
-        """The parameters shown now."""
-        values = np.zeros(COUNT)
-        for channel in self._channels:
-            channel.write(values)
-        return FacePose(values.astype(np.float32))
+        """The parameters shown now, the same object while nothing changes.
+
+        Raises InvalidValueError for a channel that wants what is no finite number.
+        """
+        wanted = tuple([layer.write() for layer in self._layers.values()])
+        if wanted == self._wanted:
+            return self._pose
+        values = self._values
+        values[:] = _NEUTRAL
+        for step in self._steps:
+            wants = wanted[step.number]
+            if wants:
+                step.blend(values, wants)
+        np.minimum(np.maximum(values, _LOW, out=values), _HIGH, out=values)
+        try:
+            self._pose = FacePose(values)
+        except InvalidValueError:
+            raise self._blame(wanted) from None
+        self._wanted = wanted
+        return self._pose
+
+    def __getitem__(self, name: str) -> Channel:
+        if name not in self._layers:
+            raise UnknownNameError("channel", name, tuple(self._layers))
+        return self._layers[name].channel
+
+    def __setitem__(self, name: str, channel: Channel) -> None:
+        self.add(name, channel)
+
+    def __delitem__(self, name: str) -> None:
+        if self[name] and name in self._fixed:
+            raise InvalidValueError("channel", "one that a program has added", name, "the face's own stay")
+        del self._layers[name]
+        self._arrange()
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._layers)
+
+    def __len__(self) -> int:
+        return len(self._layers)
+
+    def _own(self, name: str, channel: _Channel) -> _Channel:
+        self._put(name, channel, self._conflicts.rank(name))
+        return channel
+
+    def _put(self, name: str, channel: Channel, rank: Rank) -> None:
+        layer = _Layer(channel, rank)
+        for place in layer.names:
+            parameter(place)
+        if len(set(layer.names)) < len(layer.names):
+            raise InvalidValueError(f"channel {name}: names", "each parameter once", layer.names)
+        self._layers.pop(name, None)
+        self._layers[name] = layer
+        self._arrange()
+
+    def _arrange(self) -> None:
+        """Sort the parameters of all layers into steps, those of the lowest priority first."""
+        steps: dict[tuple[int, int, Way], list[int]] = {}
+        layers = tuple(self._layers.values())
+        for number, layer in enumerate(layers):
+            for row, name in enumerate(layer.names):
+                steps.setdefault((layer.rank.priority_of(name), number, layer.rank.way_of(name)), []).append(row)
+        self._steps = tuple(
+            _Step(number, layers[number], way, rows) for (_, number, way), rows in sorted(steps.items())
+        )
+        self._wanted = None
+
+    def _blame(self, wanted: tuple[bytes, ...]) -> InvalidValueError:
+        for (name, layer), wants in zip(self._layers.items(), wanted, strict=True):
+            if wants and not np.isfinite(layer.wanted).all():
+                return InvalidValueError(f"channel {name}", "finite values and weights", layer.wanted.tolist())
+        return InvalidValueError("channels", "finite values", self._values.tolist())
