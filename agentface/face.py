@@ -43,7 +43,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(slots=True)
-class Traffic:
+class MessageCounts:
     """Counts of the messages that came from outside: those understood, and the others by what was wrong."""
 
     messages: int = 0
@@ -84,7 +84,7 @@ class Face:
     ) -> None:
         self.model = face if isinstance(face, HeadModel) else load_model(face, asymmetry=asymmetry)
         self.random = np.random.default_rng(seed)
-        self.traffic = Traffic()
+        self.message_counts = MessageCounts()
         self.inputs: list[Callable[[], None]] = []
         """Called at the start of every step: where servers hand over what came in."""
         self.noted: list[Callable[[Request], None]] = []
@@ -304,8 +304,8 @@ class Face:
             "speech": None,
             "gaze_deg": [round(math.degrees(pose[name]), 3) for name in ("gaze_yaw", "gaze_pitch")],
             "frame_ms": round(self._frame_ms, 3),
-            "messages": self.traffic.messages,
-            "errors": dict(self.traffic.errors),
+            "messages": self.message_counts.messages,
+            "errors": dict(self.message_counts.errors),
         }
 
     def _touch(self) -> None:

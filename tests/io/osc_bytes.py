@@ -13,9 +13,10 @@ def text(value: str | bytes) -> bytes:
 
 
 def message(address: str, tags: str = "", *values: object) -> bytes:
+    values_of = [tag for tag in tags if tag not in "TFNI[]"]
     body = b"".join(
-        text(value) if tag == "s" else struct.pack({"f": ">f", "i": ">i", "d": ">d", "h": ">q"}[tag], value)
-        for tag, value in zip(tags, values, strict=True)
+        text(value) if tag in "sS" else struct.pack({"f": ">f", "i": ">i", "d": ">d", "h": ">q"}[tag], value)
+        for tag, value in zip(values_of, values, strict=True)
     )
     return text(address) + text("," + tags) + body
 

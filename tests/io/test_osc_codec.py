@@ -42,6 +42,31 @@ def test_every_type():
     assert decode(text("/a")) == [Message("/a", ())]
 
 
+def test_symbols_impulses_and_arrays():
+    assert decode(message("/a", "SfI", "joy", 0.5)) == [Message("/a", ("joy", 0.5, True))]
+    assert decode(message("/a", "[sf][sf]", "joy", 0.5, "fear", 0.25)) == [Message("/a", ("joy", 0.5, "fear", 0.25))]
+    assert decode(message("/a", "i[s[ff]T[]]d", 1, "x", 0.5, 0.25, 2.0)) == [
+        Message("/a", (1, "x", 0.5, 0.25, True, 2.0))
+    ]
+    assert decode(message("/a", "[]")) == [Message("/a", ())]
+
+
+@given(st.lists(st.sampled_from("sSifTFNI[]"), max_size=24))
+def test_arrays_and_tags_do_not_change_what_is_read(tags):
+    values = {"s": "word", "S": "symbol", "i": 7, "f": 0.5, "T": True, "F": False, "N": None, "I": True}
+    sent = [values[tag] for tag in tags if tag in "sSif"]
+    packet = message("/a", "".join(tags), *sent)
+    depth = balanced = 0
+    for tag in tags:
+        depth += (tag == "[") - (tag == "]")
+        balanced = min(balanced, depth)
+    if depth == balanced == 0:
+        assert decode(packet) == [Message("/a", tuple(values[tag] for tag in tags if tag not in "[]"))]
+    else:
+        with pytest.raises(MalformedError):
+            decode(packet)
+
+
 @pytest.mark.parametrize("drop", range(1, len(EMOTION)))
 def test_every_truncation_is_malformed(drop):
     # Cut behind the address it is a whole message without arguments, which the OSC specification asks us to take.
@@ -88,6 +113,10 @@ def test_bundles_nest_and_inner_times_are_not_earlier():
         text("/a") + text("sf") + bytes(8),
         text("/a") + text(",Q"),
         text("/a") + text(",[["),
+        text("/a") + text(",]["),
+        text("/a") + text(",[f]f]") + bytes(8),
+        text("/a") + text(",[ff]") + bytes(4),
+        text("/a") + text("[f]") + bytes(4),
         text("/a") + text("," + "f" * 300) + bytes(1200),
         text("/a") + text(",b") + b"\xff\xff\xff\xf0" + bytes(8),
         text("/a") + text(",b") + b"\0\0\xff\xff" + bytes(8),

@@ -89,7 +89,7 @@ def test_muscle_gaze_head_blink_and_whole_numbers(desk):
     assert pose["jaw_open"] == 1.0
     assert desk.face.status()["gaze_deg"] == [10, -5]
     assert math.degrees(pose["head_yaw"]) == pytest.approx(20)
-    assert desk.face.traffic.messages == 5
+    assert desk.face.message_counts.messages == 5
 
 
 def test_parameters_and_points_reach_what_is_no_muscle(desk):
@@ -112,8 +112,8 @@ def test_what_only_the_face_can_refuse_is_answered_too(desk):
     (answer,) = desk.said()
     assert answer.arguments[0] == "/agentface/look_at"
     assert "in front of the eyes" in answer.arguments[1]
-    assert desk.face.traffic.errors == {"malformed": 0, "unknown": 0, "rejected": 1}
-    assert desk.face.traffic.messages == 0
+    assert desk.face.message_counts.errors == {"malformed": 0, "unknown": 0, "rejected": 1}
+    assert desk.face.message_counts.messages == 0
 
 
 def test_neutral_as_an_emotion_keeps_the_muscles(desk):
@@ -140,10 +140,10 @@ def test_a_program_adds_an_address_of_its_own(desk):
     assert desk.face.pose["orbicularis_oculi_palpebralis_r"] == 1.0
     desk.take(message("/avatar/wink", "s", "x"), message("/avatar/wink"))
     assert [answer.arguments[0] for answer in desk.said()] == ["/avatar/wink", "/avatar/wink"]
-    assert desk.face.traffic.errors == {"malformed": 0, "unknown": 0, "rejected": 2}
+    assert desk.face.message_counts.errors == {"malformed": 0, "unknown": 0, "rejected": 2}
     desk.receiver.addresses.remove("/avatar/wink")
     desk.take(message("/avatar/wink", "s", "l"))
-    assert desk.face.traffic.errors["unknown"] == 1
+    assert desk.face.message_counts.errors["unknown"] == 1
 
 
 def test_an_added_address_may_do_its_own_work(desk):
@@ -151,7 +151,7 @@ def test_an_added_address_may_do_its_own_work(desk):
     desk.receiver.addresses.add("/avatar/note", taken.append)
     desk.take(message("/avatar/note", "if", 3, 0.5))
     assert taken == [(3, 0.5)]
-    assert desk.face.traffic.messages == 1
+    assert desk.face.message_counts.messages == 1
 
 
 @pytest.mark.parametrize(
@@ -210,7 +210,14 @@ def test_neutral_takes_its_fade(desk):
         (message("/agentface/gaze", "ff", 80, 0), "-50..50"),
         (message("/agentface/gaze", "f", 80), "yaw_deg"),
         (message("/agentface/head", "ff", 1, 2), "roll"),
-        (message("/agentface/blink", "f", 2), "no arguments"),
+        (message("/agentface/blink", "ff", 1, 1), "no arguments"),
+        (message("/agentface/blink", "f", math.nan), "no arguments"),
+        (message("/agentface/blink", "s", "now"), "no arguments"),
+        (message("/agentface/status", "ff", 1, 1), "no arguments"),
+        (message("/agentface/neutral", "ff", 1, 1), "[fade_s]"),
+        (message("/agentface/neutral", "f", -1), "seconds"),
+        (message("/agentface/emotion", "sf", "joy", 1.00001), "0..1"),
+        (message("/agentface/emotion", "sI", "joy"), "number"),
         (bundle(message("/agentface/emotion", "sf", "joy", 0.5), date=2e9), "ahead"),
         (bundle(message("/agentface/emotion", "sf", "joy", 0.5), date=1_000_000_000.0 + FURTHEST_S + 1), "ahead"),
     ],
@@ -238,7 +245,7 @@ def test_200_kb_of_garbage_is_counted_and_answered(desk, seed):
     packets = [source.bytes(source.choice([1, 3, 17, 400, 1472, 8193])) for _ in range(300)]
     assert sum(map(len, packets)) > 200_000
     desk.take(*packets)
-    assert desk.face.traffic.errors == {"malformed": 300, "unknown": 0, "rejected": 0}
+    assert desk.face.message_counts.errors == {"malformed": 300, "unknown": 0, "rejected": 0}
     assert desk.state == EmotionState.of(sadness=0.5)
     answers = desk.said()
     assert {answer.address for answer in answers} == {"/agentface/error"}
@@ -249,13 +256,103 @@ def test_200_kb_of_garbage_is_counted_and_answered(desk, seed):
 
 @pytest.mark.parametrize(
     "address",
-    ["/other/emotion", "/agentface", "/agentface/", "/agentface/viseme", "/agentface/onyx/emotion", "/agentface/*"],
+    [
+        "/other/emotion",
+        "/agentface",
+        "/agentface/",
+        "/agentface/viseme",
+        "/agentface/onyx/emotion",
+        "/*",
+        "/*/*/*/*",
+        "/agentface/{emotion",
+        "/agentface/[e",
+        "/agentface/e?",
+        "//emotion",
+        "/agentface/" + "*" * 300,
+    ],
 )
 def test_unknown_addresses_are_counted_and_not_answered(desk, address):
     desk.take(message(address, "sf", "joy", 0.5))
-    assert desk.face.traffic.errors == {"malformed": 0, "unknown": 1, "rejected": 0}
+    assert desk.face.message_counts.errors == {"malformed": 0, "unknown": 1, "rejected": 0}
     assert not desk.answers
     assert desk.state == EmotionState()
+
+
+@pytest.mark.parametrize(
+    "address",
+    [
+        "/agentface/{emotion,mood}", "/agentface/e*n", "/agentface/emotio?", "/agentface/[!a-df-z]motion",
+        "/*/emotion", "/agentface/*/emotion", "/agentface/{amber,onyx}/emotion", "/agentface/a????/[d-f]motion",
+    ],
+)  # fmt: skip
+def test_patterns_are_matched(desk, address):
+    desk.take(message(address, "sf", "joy", 0.5))
+    assert desk.state == EmotionState.of(happiness=0.5)
+    assert desk.face.message_counts.messages == 1
+    assert desk.face.message_counts.errors == {"malformed": 0, "unknown": 0, "rejected": 0}
+
+
+def test_a_pattern_means_each_address_by_itself(desk):
+    desk.receiver.addresses.add("/avatar/muscles", lambda arguments: SetMuscle(*arguments, 0.0))
+    desk.take(message("/{agentface,avatar}/muscle*", "sf", "risorius", 0.5))
+    assert desk.face.message_counts.messages == 2
+    desk.take(message("/agentface/{muscle,emotion,status}", "sf", "jaw_open", 0.5))
+    assert desk.face.held["jaw_open"] == 0.5
+    refused = [answer.arguments[0] for answer in desk.said()]
+    assert refused == ["/agentface/emotion", "/agentface/status"]
+    desk.take(message("/agentface/stat*"))
+    assert desk.said()[0].address == "/agentface/status"
+
+
+PRESSED = [("f", 1.0), ("i", 1), ("f", -0.5), ("d", 1e-3), ("T",), ("I",), ("N",), ("s", "bang"), ("S", "bang"), ("",)]
+RELEASED = [("f", 0.0), ("i", 0), ("h", 0), ("F",), ("f", -0.0)]
+
+
+@pytest.mark.parametrize("arguments", [*PRESSED, *RELEASED], ids=str)
+def test_a_button_blinks_when_it_is_pressed(desk, arguments):
+    desk.take(message("/agentface/blink", *arguments))
+    desk.face.step(0.09)
+    assert desk.face.pose["orbicularis_oculi_palpebralis_l"] == (1.0 if arguments in PRESSED else 0.0)
+    assert desk.face.message_counts.messages == 1
+    assert not desk.answers
+
+
+@pytest.mark.parametrize("arguments", [*PRESSED, *RELEASED], ids=str)
+def test_a_button_asks_for_the_status_when_it_is_pressed(desk, arguments):
+    desk.take(message("/agentface/status", *arguments))
+    assert [answer.address for answer in desk.said()] == ["/agentface/status"] * (arguments in PRESSED)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "left", "fade"),
+    [(("T",), 0.0, 0.25), (("I",), 0.0, 0.25), (("N",), 0.0, 0.25), (("s", "bang"), 0.0, 0.25), (("F",), 0.5, 0.0),
+     (("f", 0.0), 0.0, 0.0), (("i", 1), 0.0, 1.0)],
+)  # fmt: skip
+def test_a_button_lets_go_of_everything(desk, arguments, left, fade):
+    desk.take(message("/agentface/emotion", "sff", "joy", 0.5, 0.0))
+    desk.take(message("/agentface/neutral", *arguments))
+    assert desk.state["happiness"] == left
+    desk.face.step(0.5 * fade)
+    shown = desk.face.status()["shown"]["emotion"]["happiness"]
+    assert shown == pytest.approx(0.25 if fade else left, abs=1e-4)
+    assert not desk.answers
+
+
+def test_symbols_arrays_and_rounded_peaks_are_taken(desk):
+    desk.take(message("/agentface/emotion", "Sf", "happiness", 0.75))
+    assert desk.state == EmotionState.of(happiness=0.75)
+    desk.take(message("/agentface/emotions", "[sf][sf]", "joy", 0.5, "fear", 0.25))
+    assert desk.state == EmotionState.of(happiness=0.5, fear=0.25)
+    desk.take(message("/agentface/emotion", "sf", "happiness", 1.0000001))
+    assert desk.state["happiness"] == 1.0
+    desk.take(message("/agentface/emotion", "sf", "happiness", -1e-7))
+    assert desk.state["happiness"] == 0.0
+    desk.take(
+        message("/agentface/gaze", "ff", 50.00001, -40.00001), message("/agentface/muscle", "sf", "nasalis", 1.0000001)
+    )
+    desk.face.step(1.0)
+    assert desk.face.status()["gaze_deg"] == [50, -40]
+    assert not desk.answers
 
 
 def test_the_face_has_a_name_of_its_own(desk):
@@ -294,7 +391,7 @@ def test_a_bundle_with_one_malformed_part_does_nothing(desk):
         bundle(message("/agentface/emotion", "sf", "joy", 0.5), message("/agentface/emotion", "sf", "fear", 0.5)[:-4])
     )
     assert desk.state == EmotionState()
-    assert desk.face.traffic.errors["malformed"] == 1
+    assert desk.face.message_counts.errors["malformed"] == 1
 
 
 def test_bundles_play_at_their_time_in_their_order(desk):
@@ -318,11 +415,11 @@ def test_a_wrong_message_in_a_later_bundle_is_answered_now(desk):
     assert desk.said()[0].arguments[0] == "/agentface/emotion"
 
 
-def test_the_agenda_is_bounded(desk):
+def test_the_schedule_is_bounded(desk):
     packet = bundle(*[message("/agentface/blink")] * 200, date=desk.clock.date() + 5)
     desk.take(*[packet] * (MOST // 200 + 2))
-    assert desk.face.traffic.errors["rejected"] == (MOST // 200 + 2) * 200 - MOST
-    assert desk.face.traffic.messages == MOST
+    assert desk.face.message_counts.errors["rejected"] == (MOST // 200 + 2) * 200 - MOST
+    assert desk.face.message_counts.messages == MOST
 
 
 def test_answers_are_limited_in_time(desk):
@@ -332,10 +429,10 @@ def test_answers_are_limited_in_time(desk):
     desk.clock.sleep(0.5)
     desk.take(*wrong)
     assert len(desk.said()) == ANSWERS_A_SECOND / 2
-    assert desk.face.traffic.errors["rejected"] == 2000
+    assert desk.face.message_counts.errors["rejected"] == 2000
 
 
 def test_the_status_is_limited_over_all_senders(desk):
     desk.receiver.take([(message("/agentface/status"), ("10.0.0.1", port)) for port in range(1000)])
     assert len(desk.said()) == ANSWERS_AT_ONCE
-    assert desk.face.traffic.messages == 1000
+    assert desk.face.message_counts.messages == 1000

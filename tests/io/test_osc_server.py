@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+import errno
 import json
 import socket
 import threading
@@ -77,7 +78,7 @@ def test_errors_come_back_to_the_sender(face, client):
     assert "more than" in hear(face, client).arguments[1]
     client.send(b"")
     assert hear(face, client).arguments[0] == ""
-    assert face.traffic.errors == {"malformed": 3, "unknown": 0, "rejected": 1}
+    assert face.message_counts.errors == {"malformed": 3, "unknown": 0, "rejected": 1}
 
 
 def test_a_flood_leaves_the_newest_state_and_no_queue(face, server, client):
@@ -92,7 +93,7 @@ def test_a_flood_leaves_the_newest_state_and_no_queue(face, server, client):
     wait_for(lambda: face.emotion == EmotionState.of(happiness=0.25), face)
     face.step(0.01)
     assert not server._waiting
-    assert face.traffic.errors == {"malformed": 0, "unknown": 0, "rejected": 0}
+    assert face.message_counts.errors == {"malformed": 0, "unknown": 0, "rejected": 0}
 
 
 def test_without_steps_the_oldest_are_dropped(face, server, client):
@@ -104,14 +105,14 @@ def test_without_steps_the_oldest_are_dropped(face, server, client):
     assert len(server._waiting) == MOST_WAITING
     face.step(0.01)
     assert face.emotion["happiness"] > 0.9
-    assert face.traffic.messages == MOST_WAITING
+    assert face.message_counts.messages == MOST_WAITING
 
 
 def test_a_sender_that_is_gone_does_not_stop_the_server(face, server, client):
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as gone:
         gone.connect((server.host, server.port))
         gone.send(message("/agentface/status"))
-    wait_for(lambda: face.traffic.messages == 1, face)
+    wait_for(lambda: face.message_counts.messages == 1, face)
     client.send(message("/agentface/status"))
     assert hear(face, client).address == "/agentface/status"
 
@@ -122,6 +123,61 @@ def test_a_taken_port_is_one_clear_error(face, server):
     with pytest.raises(ServerError, match="no such host"):
         OscServer(face, "no such host.invalid")
     assert len(face.inputs) == 1
+
+
+@pytest.mark.parametrize("host", ["127.0.0.1", "localhost", "LOCALHOST"])
+@pytest.mark.parametrize("there", [(socket.AF_INET, "127.0.0.1"), (socket.AF_INET6, "::1")], ids=["v4", "v6"])
+def test_whatever_localhost_means_it_is_heard_and_answered(face, host, there):
+    family, place = there
+    with OscServer(face, host, 0) as server, socket.socket(family, socket.SOCK_DGRAM) as client:
+        client.connect((place, server.port))
+        client.settimeout(0.05)
+        client.send(message("/agentface/emotion", "sf", "joy", 0.5))
+        wait_for(lambda: face.emotion["happiness"] == 0.5, face)
+        client.send(message("/agentface/status"))
+        assert hear(face, client).address == "/agentface/status"
+
+
+def test_the_loopback_is_all_that_it_listens_on(server):
+    places = {listener.getsockname()[0] for listener in server._sockets}
+    assert places == {"127.0.0.1", "::1"}
+    assert {listener.getsockname()[1] for listener in server._sockets} == {server.port}
+
+
+def test_one_address_alone_is_taken_at_its_word(face):
+    with OscServer(face, "::1", 0) as server:
+        assert [listener.getsockname()[0] for listener in server._sockets] == ["::1"]
+
+
+def test_a_machine_without_ipv6_listens_on_what_it_has(face, monkeypatch):
+    listen = server_module._listen
+
+    def without(host, port):
+        if ":" in host:
+            raise ServerError("none") from OSError(errno.EADDRNOTAVAIL, "none")
+        return listen(host, port)
+
+    monkeypatch.setattr(server_module, "_listen", without)
+    with OscServer(face, port=0) as server:
+        assert [listener.getsockname()[0] for listener in server._sockets] == ["127.0.0.1"]
+
+
+def test_a_port_taken_under_the_other_address_is_told_or_passed_over(face):
+    with socket.socket(socket.AF_INET6, socket.SOCK_DGRAM) as taken:
+        taken.bind(("::1", 0))
+        port = taken.getsockname()[1]
+        with pytest.raises(ServerError, match=f"port {port} of ::1"):
+            OscServer(face, port=port)
+    assert not face.inputs
+
+
+def test_what_the_system_refuses_is_blamed_on_nobody_else():
+    error = server_module._refused("127.0.0.1", 80, PermissionError(errno.EACCES, "Permission denied"))
+    assert "the right to listen on port 80" in str(error)
+    assert "program" not in str(error)
+    error = server_module._refused("10.9.8.7", 7400, OSError(errno.EADDRNOTAVAIL, "Cannot assign requested address"))
+    assert "an address of this machine, got '10.9.8.7'" in str(error)
+    assert "program" not in str(error)
 
 
 def test_closing_frees_the_port_and_the_thread(face):

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from typing import Any, TypeAlias
 
 from agentface.emotion.state import EMOTIONS, NEUTRAL, EmotionState, canonical_or_neutral
 from agentface.errors import AgentFaceError, InvalidValueError, UnknownNameError
+from agentface.io.osc.pattern import is_pattern, matches
 from agentface.requests import (
     Blink,
     LookAt,
@@ -25,10 +27,6 @@ STATUS = "status"
 Reader: TypeAlias = Callable[[Sequence[Any]], Request | None]
 """Makes the request of a message's arguments; None asks for nothing. Raises UnknownNameError or InvalidValueError."""
 _SPECIAL = frozenset(" #*,?[]{}")
-
-
-class UnknownAddressError(Exception):
-    """An address that is not ours."""
 
 
 class Addresses:
@@ -62,15 +60,19 @@ class Addresses:
             raise UnknownNameError("added address", address, tuple(self._readers))
 
     def is_status(self, address: str) -> bool:
-        """Whether it asks for the status."""
+        """Whether it is one of those that ask for the status."""
         return self._ours.get(address) == STATUS
 
+    def meant(self, address: str) -> tuple[str, ...]:
+        """The addresses that a message's address stands for: itself, or those that a pattern matches."""
+        if not is_pattern(address):
+            return (address,) if address in self._ours or address in self._readers else ()
+        return tuple(known for known in (*self._ours, *self._readers) if matches(address, known))
+
     def read(self, address: str, arguments: Sequence[Any]) -> Request | None:
-        """The request that a message makes; raises UnknownAddressError, UnknownNameError or InvalidValueError."""
+        """The request that a message to one of our addresses makes; raises UnknownNameError or InvalidValueError."""
         if address in self._ours:
             return _READERS[self._ours[address]](arguments)
-        if address not in self._readers:
-            raise UnknownAddressError(address)
         try:
             return self._readers[address](arguments)
         except AgentFaceError:
@@ -109,9 +111,11 @@ def _emotions(arguments: Sequence[Any]) -> Request:
     return SetEmotions(EmotionState.of(dict(zip(names, arguments[1::2], strict=True))))
 
 
-def _neutral(arguments: Sequence[Any]) -> Request:
+def _neutral(arguments: Sequence[Any]) -> Request | None:
     _count(arguments, "[fade_s]", 0, 1)
-    return Neutral(*arguments)
+    if arguments and not isinstance(arguments[0], bool) and arguments[0] not in (None, "bang"):
+        return Neutral(*arguments)
+    return Neutral() if pressed(arguments) else None
 
 
 def _muscle(arguments: Sequence[Any]) -> Request:
@@ -139,9 +143,24 @@ def _head(arguments: Sequence[Any]) -> Request:
     return SetHead(*arguments)
 
 
-def _blink(arguments: Sequence[Any]) -> Request:
-    _count(arguments, "no arguments", 0, 0)
-    return Blink()
+def _blink(arguments: Sequence[Any]) -> Request | None:
+    return Blink() if pressed(arguments) else None
+
+
+def pressed(arguments: Sequence[Any]) -> bool:
+    """Whether a message that takes no arguments is meant: buttons send one, 0 or false when they are let go of.
+
+    True for no argument, true, an impulse, nil, ``bang`` and any number but 0. Raises InvalidValueError for others.
+    """
+    first = arguments[0] if arguments else True
+    if len(arguments) > 1 or not (first is None or first == "bang" or isinstance(first, bool) or _is_number(first)):
+        raise InvalidValueError("arguments", "no arguments", list(arguments), "send no arguments, or a button's one")
+    return first is None or first == "bang" or bool(first)
+
+
+def _is_number(value: Any) -> bool:
+    """Whether it is a finite number."""
+    return isinstance(value, (int, float)) and not isinstance(value, bool) and math.isfinite(value)
 
 
 def _named(arguments: Sequence[Any]) -> tuple[str, float]:
@@ -152,7 +171,7 @@ def _named(arguments: Sequence[Any]) -> tuple[str, float]:
     return name, value
 
 
-_READERS: dict[str, Callable[[Sequence[Any]], Request]] = {
+_READERS: dict[str, Reader] = {
     "emotion": _emotion,
     "emotions": _emotions,
     "neutral": _neutral,

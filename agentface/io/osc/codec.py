@@ -19,6 +19,8 @@ _MOST_ARGUMENTS = 256
 _BUNDLE = b"#bundle\0"
 _UNIX_EPOCH_IN_NTP = 2_208_988_800
 _FIXED = {"i": 4, "f": 4, "r": 4, "m": 4, "h": 8, "d": 8, "t": 8, "T": 0, "F": 0, "N": 0}
+_ALIKE = str.maketrans({"S": "s", "I": "T", "[": None, "]": None})
+"""A symbol is read as a string, an impulse as true, an array as what is in it."""
 _KNOWN = frozenset(_FIXED) | frozenset("sb")
 
 
@@ -28,7 +30,10 @@ class MalformedError(Exception):
 
 @dataclass(frozen=True, slots=True)
 class Message:
-    """One message: its address, its arguments, and its date (seconds since 1970), None for at once."""
+    """One message: its address, its arguments, and its date (seconds since 1970), None for at once.
+
+    Of an array, what is in it stands among the arguments.
+    """
 
     address: str
     arguments: tuple[Any, ...]
@@ -91,20 +96,31 @@ def _message(packet: bytes, date: float | None) -> Message:
     try:
         address, place = osc_types.get_string(packet, 0)
         tags = osc_types.get_string(packet, place)[0] if place < len(packet) else ","
-        if tags[:1] != "," or not set(tags[1:]) <= _KNOWN or len(tags) > _MOST_ARGUMENTS:
+        start = place + _padded(tags) if place < len(packet) else place
+        plain = tags.translate(_ALIKE)
+        if tags[:1] != "," or not set(plain[1:]) <= _KNOWN or len(tags) > _MOST_ARGUMENTS or not _nested(tags):
             raise MalformedError(
-                f"type tags {tags[:24]!r}: expected a comma and up to {_MOST_ARGUMENTS - 1} of isfdhTFNbrmt"
+                f"type tags {tags[:24]!r}: expected a comma and up to {_MOST_ARGUMENTS - 1} of isfdhTFNIbrmtS[]"
             )
-        arguments = tuple(OscMessage(packet).params)
+        arguments = tuple(OscMessage(packet[:place] + _text(plain) + packet[start:]).params)
     except MalformedError:
         raise
     except Exception as error:  # a codec's own errors, UnicodeDecodeError, and whatever else foreign bytes provoke
         raise MalformedError(f"no OSC message: {type(error).__name__}") from error
-    due = place + (_padded(tags) if place < len(packet) else 0)
-    due += sum(_length(tag, value) for tag, value in zip(tags[1:], arguments, strict=True))
+    due = start + sum(_length(tag, value) for tag, value in zip(plain[1:], arguments, strict=True))
     if due != len(packet):
         raise MalformedError(f"{len(packet)} bytes, where the type tags {tags[:24]!r} need {due}")
     return Message(address, arguments, date)
+
+
+def _nested(tags: str) -> bool:
+    """Whether each array that begins also ends."""
+    depth = 0
+    for tag in tags:
+        depth += (tag == "[") - (tag == "]")
+        if depth < 0:
+            return False
+    return depth == 0
 
 
 def _length(tag: str, value: Any) -> int:

@@ -8,7 +8,7 @@ from collections.abc import Callable, Hashable, Iterable
 from agentface.clock import Clock
 from agentface.errors import AgentFaceError, InvalidValueError
 from agentface.face import Face
-from agentface.io.osc.addresses import PREFIX, STATUS, Addresses, UnknownAddressError, reason_and_hint
+from agentface.io.osc.addresses import PREFIX, STATUS, Addresses, pressed, reason_and_hint
 from agentface.io.osc.codec import MalformedError, Message, address_of, decode, encode
 from agentface.io.osc.rate_limit import RateLimit
 from agentface.io.osc.schedule import FURTHEST_S, MOST, Schedule, Sender, Waiting
@@ -59,20 +59,21 @@ class Receiver:
         newest: dict[tuple[Hashable, ...], Waiting],
         askers: dict[Sender, None],
     ) -> None:
-        traffic, address = self._face.traffic, message.address
-        try:
-            if self.addresses.is_status(address):
-                askers[sender] = None
+        counts, meant = self._face.message_counts, self.addresses.meant(message.address)
+        if not meant:
+            counts.errors["unknown"] += 1
+        for address in meant:
+            try:
+                if not self.addresses.is_status(address):
+                    request = self.addresses.read(address, message.arguments)
+                    if request is not None:
+                        self._plan(Waiting(request, sender, address), message.date, newest)
+                elif pressed(message.arguments):
+                    askers[sender] = None
+            except AgentFaceError as error:
+                self._refuse("rejected", sender, address, *reason_and_hint(error))
             else:
-                request = self.addresses.read(address, message.arguments)
-                if request is not None:
-                    self._plan(Waiting(request, sender, address), message.date, newest)
-        except UnknownAddressError:
-            traffic.errors["unknown"] += 1
-        except AgentFaceError as error:
-            self._refuse("rejected", sender, address, *reason_and_hint(error))
-        else:
-            traffic.messages += 1
+                counts.messages += 1
 
     def _plan(self, waiting: Waiting, date: float | None, newest: dict[tuple[Hashable, ...], Waiting]) -> None:
         now = self._clock.date()
@@ -91,11 +92,11 @@ class Receiver:
         try:
             self._face.apply(waiting.request)
         except AgentFaceError as error:  # what only this face can tell, such as a point behind its eyes
-            self._face.traffic.messages -= 1
+            self._face.message_counts.messages -= 1
             self._refuse("rejected", waiting.sender, waiting.address, *reason_and_hint(error))
 
     def _refuse(self, kind: str, sender: Sender, address: str, reason: str, hint: str) -> None:
-        self._face.traffic.errors[kind] += 1
+        self._face.message_counts.errors[kind] += 1
         if self._errors.take():
             self._reply(encode(f"{PREFIX}error", address[:200], reason, hint[:400]), sender)
 

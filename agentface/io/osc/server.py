@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import socket
 import struct
 import sys
@@ -18,6 +19,9 @@ from agentface.io.osc.receiver import Receiver
 from agentface.io.osc.schedule import Sender
 
 DEFAULT_HOST, DEFAULT_PORT = "127.0.0.1", 7400
+_LOOPBACK = ("127.0.0.1", "::1")
+"""What ``localhost`` may mean; a program that sends to it takes one of them and hears of no other."""
+_TRIES = 16
 MOST_WAITING = 1024
 """So many datagrams may wait for the next frame; when more come, the oldest are dropped."""
 _SOCKET_BUFFER = 4 * 1024 * 1024
@@ -26,12 +30,13 @@ _SOCKET_BUFFER = 4 * 1024 * 1024
 class OscServer:
     """Receives OSC for a face from its making until ``close``; as a context manager, until the block ends.
 
-    A thread does nothing but empty the socket; everything else happens in ``Face.step``, in the thread that
+    A thread for each socket does nothing but empty it; everything else happens in ``Face.step``, in the thread that
     calls it.
 
     Args:
         face: what the messages are for.
-        host: the address to listen on; the default takes messages from this machine alone.
+        host: the address to listen on. The default takes messages from this machine alone, to ``127.0.0.1`` and,
+            where the machine has it, ``::1``: ``localhost`` may mean either.
         port: 0 for any free one.
         clock: dates bundles and limits the rate of answers.
 
@@ -42,15 +47,19 @@ class OscServer:
     def __init__(
         self, face: Face, host: str = DEFAULT_HOST, port: int = DEFAULT_PORT, *, clock: Clock | None = None
     ) -> None:
-        self._socket = _bind(host, port)
-        self.host, self.port = self._socket.getsockname()[:2]
+        self._sockets = _bind(host, port)
+        self.host, self.port = self._sockets[0].getsockname()[:2]
         self._face = face
         self._receiver = Receiver(face, self._reply, clock or SystemClock())
         self.addresses = self._receiver.addresses
         self._waiting: deque[tuple[bytes, Sender]] = deque(maxlen=MOST_WAITING)
         self._closed = threading.Event()
-        self._thread = threading.Thread(target=self._empty_socket, name="agentface-osc", daemon=True)
-        self._thread.start()
+        self._threads = [
+            threading.Thread(target=self._empty, args=(listener,), name="agentface-osc", daemon=True)
+            for listener in self._sockets
+        ]
+        for thread in self._threads:
+            thread.start()
         face.inputs.append(self.take_in)
 
     def take_in(self) -> None:
@@ -64,8 +73,9 @@ class OscServer:
             return
         self._closed.set()
         self._face.inputs.remove(self.take_in)
-        self._thread.join()
-        self._socket.close()
+        for thread, listener in zip(self._threads, self._sockets, strict=True):
+            thread.join()
+            listener.close()
 
     def __enter__(self) -> Self:
         return self
@@ -75,11 +85,11 @@ class OscServer:
     ) -> None:
         self.close()
 
-    def _empty_socket(self) -> None:
+    def _empty(self, listener: socket.socket) -> None:
         while not self._closed.is_set():
             try:
                 # One byte more than allowed shows that a datagram is too long without taking all of it in.
-                self._waiting.append(self._socket.recvfrom(LARGEST_DATAGRAM + 1))
+                self._waiting.append(listener.recvfrom(LARGEST_DATAGRAM + 1))
             except BlockingIOError:
                 continue
             except OSError:
@@ -87,14 +97,43 @@ class OscServer:
                 self._closed.wait(0.001)
 
     def _reply(self, packet: bytes, sender: Sender) -> None:
+        family = socket.AF_INET6 if len(sender) == 4 else socket.AF_INET  # IPv6 adds flow and scope to a place
         try:
-            self._socket.sendto(packet, sender)
+            next(listener for listener in self._sockets if listener.family == family).sendto(packet, sender)
         except OSError:
             # The sender is gone or cannot be reached; it only misses its answer.
             return
 
 
-def _bind(host: str, port: int) -> socket.socket:
+def _bind(host: str, port: int, tries: int = _TRIES) -> list[socket.socket]:
+    """The sockets that listen; both loopback addresses on one port where the loopback is meant."""
+    if host.lower() not in ("localhost", _LOOPBACK[0]):
+        return [_listen(host, port)]
+    first = _loopback(_LOOPBACK[0], port)
+    if first is None:
+        return [_listen(_LOOPBACK[1], port)]
+    try:
+        second = _loopback(_LOOPBACK[1], first.getsockname()[1])
+    except ServerError:
+        first.close()
+        if port or tries <= 1:
+            raise
+        return _bind(host, port, tries - 1)  # the port that the system chose is taken under the other address
+    return [first] if second is None else [first, second]
+
+
+def _loopback(host: str, port: int) -> socket.socket | None:
+    """A socket on one of the loopback addresses; None where the machine does not have it."""
+    try:
+        return _listen(host, port)
+    except ServerError as error:
+        cause = error.__cause__
+        if isinstance(cause, OSError) and cause.errno in (errno.EADDRNOTAVAIL, errno.EAFNOSUPPORT):
+            return None
+        raise
+
+
+def _listen(host: str, port: int) -> socket.socket:
     try:
         family, kind, protocol, _, place = socket.getaddrinfo(host, port, type=socket.SOCK_DGRAM)[0]
         listener = socket.socket(family, kind, protocol)
@@ -104,14 +143,21 @@ def _bind(host: str, port: int) -> socket.socket:
         listener.bind(place)
     except OSError as error:
         listener.close()
-        advice = "end the program that has it, or choose another with --osc HOST:PORT"
-        raise ServerError(
-            f"OSC server: expected port {port} of {host} to be free: {error.strerror}; {advice}"
-        ) from error
+        raise _refused(host, port, error) from error
     _enlarge(listener)
     # The system's own time limit costs one call a datagram, Python's costs two, and each gives the thread's turn away.
     listener.setsockopt(socket.SOL_SOCKET, socket.SO_RCVTIMEO, struct.pack("@ll", 0, 100_000))
     return listener
+
+
+def _refused(host: str, port: int, error: OSError) -> ServerError:
+    expected, advice = f"port {port} of {host} to be free", "end the program that has it, or choose another"
+    if error.errno in (errno.EACCES, errno.EPERM):
+        expected, advice = f"the right to listen on port {port} of {host}", "choose a port from 1024 on"
+    elif error.errno == errno.EADDRNOTAVAIL:
+        expected, advice = "an address of this machine", "choose one that it has"
+    got = f"got {host!r}: " if error.errno == errno.EADDRNOTAVAIL else ""
+    return ServerError(f"OSC server: expected {expected}, {got}{error.strerror}; {advice} with --osc HOST:PORT")
 
 
 def _enlarge(listener: socket.socket) -> None:
