@@ -86,6 +86,7 @@ def _faults_of(read: Callable[[], object]) -> list[Fault]:
 
 def _rule_readers() -> dict[str, _Reader]:
     from agentface.emotion.tables import load_blends, load_emotions
+    from agentface.io.emotion_vocabularies import load_vocabularies
     from agentface.motion.conflicts import load_conflicts
     from agentface.studies.calibration.action_units import load_action_units
 
@@ -94,6 +95,7 @@ def _rule_readers() -> dict[str, _Reader]:
         "blends.yaml": load_blends,
         "action_units.yaml": load_action_units,
         "conflicts.yaml": load_conflicts,
+        "vocabularies.yaml": load_vocabularies,
     }
 
 

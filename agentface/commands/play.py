@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from agentface.emotion.score import Score
     from agentface.face import Face
 
+_MOST_NOTES = 5
 _STOPPED = 130
 """The exit code of a command that Ctrl-C stopped."""
 
@@ -97,6 +98,8 @@ def _score(document: Path) -> Score:
     score = load_emotionml(document)
     if not score.cues:
         raise DataError([Fault(document, None, "", "at least one emotion", "none")])
+    for note in score.notes[:_MOST_NOTES]:
+        click.echo(f"note: {note}", err=True)
     return score
 
 

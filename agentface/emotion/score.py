@@ -12,14 +12,15 @@ import numpy as np
 import numpy.typing as npt
 
 from agentface.conventions import check_fraction, check_range
-from agentface.emotion.state import EMOTIONS, EmotionState, canonical
-from agentface.errors import InvalidValueError
+from agentface.emotion.state import EMOTIONS, NEUTRAL, EmotionState, canonical_or_neutral
+from agentface.errors import Fault, InvalidValueError
 
 FADE_S = 0.25
 """How long the face takes from one constant state to another."""
 LONGEST_S = 3600.0
 FASTEST_HZ = 10_000.0
 _STEPS_PER_S = 20
+_ROWS = (*EMOTIONS, NEUTRAL)
 _AHEAD_S = 2 / _STEPS_PER_S
 _FOLLOW_S = 3 / _STEPS_PER_S
 """Minimum-jerk moves of three steps, begun every step towards where a trace is two steps on, keep close to it."""
@@ -30,7 +31,7 @@ class Cue:
     """One emotion from ``start_s`` until just before ``end_s``: constant, or a trace of samples joined by lines.
 
     Attributes:
-        emotion: one of ``EMOTIONS``.
+        emotion: one of ``EMOTIONS``, or ``neutral``, which leaves each of them at most 1 minus its own intensity.
         start_s: seconds, at least 0.
         end_s: seconds, later than the start, at most ``LONGEST_S``.
         samples: intensities 0..1, the first at the start; the last one holds until the end.
@@ -46,8 +47,8 @@ class Cue:
     rate_hz: float = 0.0
 
     def __post_init__(self) -> None:
-        if canonical(self.emotion) != self.emotion:
-            raise InvalidValueError("emotion", f"one of {', '.join(EMOTIONS)}", self.emotion)
+        if canonical_or_neutral(self.emotion) != self.emotion:
+            raise InvalidValueError("emotion", f"one of {', '.join(_ROWS)}", self.emotion)
         check_range("start_s", self.start_s, 0.0, LONGEST_S)
         if check_range("end_s", self.end_s, 0.0, LONGEST_S) <= self.start_s:
             raise InvalidValueError("end_s", f"more than the start, {self.start_s:g}", self.end_s)
@@ -79,18 +80,20 @@ class Score:
     """Cues in the order of their starts; where cues of one emotion overlap, the largest intensity counts.
 
     ``state`` is what the cues say, exactly. ``changes`` are the messages that make a face show it: a jump between
-    constant states becomes a fade, a trace a chain of small moves.
+    constant states becomes a fade, a trace a chain of small moves. ``notes`` are the places of a document where the
+    cues are not all that it says.
     """
 
-    def __init__(self, cues: Iterable[Cue] = ()) -> None:
-        self.cues = tuple(sorted(cues, key=lambda cue: (cue.start_s, cue.end_s, EMOTIONS.index(cue.emotion))))
+    def __init__(self, cues: Iterable[Cue] = (), notes: Iterable[Fault] = ()) -> None:
+        self.cues = tuple(sorted(cues, key=lambda cue: (cue.start_s, cue.end_s, _ROWS.index(cue.emotion))))
+        self.notes = tuple(notes)
         self.duration_s = max((cue.end_s for cue in self.cues), default=0.0)
         counts = np.array([len(cue.samples) for cue in self.cues], np.intp)
         self._starts = np.array([cue.start_s for cue in self.cues])
         self._ends = np.array([cue.end_s for cue in self.cues])
         self._rates = np.array([cue.rate_hz for cue in self.cues])
         self._still = np.array([cue.moves_until_s for cue in self.cues])
-        self._emotions = np.array([EMOTIONS.index(cue.emotion) for cue in self.cues], np.intp)
+        self._emotions = np.array([_ROWS.index(cue.emotion) for cue in self.cues], np.intp)
         self._samples = np.array([sample for cue in self.cues for sample in cue.samples])
         self._last = np.cumsum(counts) - 1
         self._first = self._last + 1 - counts
@@ -132,9 +135,10 @@ class Score:
         place = np.clip((time_s - self._starts[active]) * self._rates[active], 0.0, last - first)
         before = first + place.astype(np.intp)
         low, high = self._samples[before], self._samples[np.minimum(before + 1, last)]
-        levels = np.zeros(len(EMOTIONS))
+        levels = np.zeros(len(_ROWS))
         np.maximum.at(levels, self._emotions[active], low + (place - np.floor(place)) * (high - low))
-        return EmotionState(levels.clip(0.0, 1.0))
+        levels = levels.clip(0.0, 1.0)
+        return EmotionState(np.minimum(levels[:-1], 1.0 - levels[-1]))
 
     def _times(self) -> list[float]:
         """Where a state may begin: starts, ends, and the steps of what moves."""

@@ -5,14 +5,12 @@ Source: Emotion Markup Language 1.0, W3C Recommendation 22 May 2014, section 2.4
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from agentface.emotion.score import LONGEST_S
 from agentface.errors import did_you_mean
-
-Tell = Callable[[int, str, str, str, str], None]
-"""Takes a fault: line, where, expected, got, hint."""
+from agentface.io.emotion_vocabularies import Tell
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,13 +39,14 @@ class Timing:
     anchor: str = "start"
 
 
-def spans_of(timings: Sequence[Timing], tell: Tell) -> list[tuple[float, float]]:
+def spans_of(timings: Sequence[Timing], tell: Tell, note: Tell) -> list[tuple[float, float]]:
     """Start and end of each emotion in seconds, the earliest of them at 0 or later.
 
     Absolute times count from the earliest of them. An emotion that says nothing of its start follows the one before
-    it in the document. What cannot be placed is told, and stands at 0.
+    it in the document. What something outside of the document is the reference of counts from the beginning, which is
+    noted where it might be an emotion's id. What cannot be placed is told, and stands at 0.
     """
-    names = _names(timings, tell)
+    names = _names(timings, tell, note)
     epoch = min((timing.start for timing in timings if timing.start is not None), default=0.0)
     spans: dict[int, tuple[float, float]] = {}
     for index in range(len(timings)):
@@ -72,7 +71,7 @@ def spans_of(timings: Sequence[Timing], tell: Tell) -> list[tuple[float, float]]
     return [(start, end) for start, end in placed]
 
 
-def _names(timings: Sequence[Timing], tell: Tell) -> dict[str, int]:
+def _names(timings: Sequence[Timing], tell: Tell, note: Tell) -> dict[str, int]:
     names: dict[str, int] = {}
     for index, timing in enumerate(timings):
         if timing.name is not None and names.setdefault(f"#{timing.name}", index) != index:
@@ -80,11 +79,9 @@ def _names(timings: Sequence[Timing], tell: Tell) -> dict[str, int]:
     for timing in timings:
         reference = timing.reference or ""
         if reference.startswith("#") and reference not in names:
-            hint = did_you_mean(reference, list(names)) if names else "give that emotion an id"
-            tell(timing.line, f"{timing.where}.time-ref-uri", "the id of an emotion", repr(reference), hint)
-        elif reference and reference not in names and timing.anchor == "end":
-            expected = "start for what is outside of the document"
-            tell(timing.line, f"{timing.where}.time-ref-anchor-point", expected, "end", "its end is not known")
+            hint = f"{did_you_mean(reference, list(names))} " if names else ""
+            hint += "It is taken for something outside of the document, at its beginning"
+            note(timing.line, f"{timing.where}.time-ref-uri", "the id of an emotion", repr(reference), hint)
     return names
 
 

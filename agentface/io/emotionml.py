@@ -1,4 +1,4 @@
-"""EmotionML documents as scores: the six emotions of the vocabulary big6, in time.
+"""EmotionML documents as scores: the six emotions in time.
 
 Source: Emotion Markup Language 1.0, W3C Recommendation 22 May 2014; Vocabularies for EmotionML, W3C Note 1 April 2014.
 """
@@ -9,15 +9,14 @@ import re
 from dataclasses import dataclass
 from pathlib import Path
 
+from agentface.conventions import ROUNDING
 from agentface.emotion.score import FASTEST_HZ, Cue, Score
-from agentface.emotion.state import ALIASES, EMOTIONS
 from agentface.errors import DataError, Fault, did_you_mean
 from agentface.io.emotion_times import Timing, spans_of
+from agentface.io.emotion_vocabularies import BIG6, INTENSITY, Vocabularies, is_id, published, shown_as
 from agentface.io.markup import Element, read_xml
 
 NAMESPACE = "http://www.w3.org/2009/10/emotionml"
-BIG6 = "http://www.w3.org/TR/emotion-voc/xml#big6"
-INTENSITY = "http://www.w3.org/TR/emotion-voc/xml#intensity-dimension"
 LARGEST_FILE = 1024 * 1024
 MOST_EMOTIONS = 10_000
 LASTS_MS = 2000.0
@@ -32,6 +31,7 @@ _ATTRIBUTES = {
     "category": ("name", "value", "confidence"),
     "intensity": ("value", "confidence"),
     "trace": ("freq", "samples"),
+    "reference": ("uri", "role", "media-type"),
     "vocabulary": ("type", "id"),
     "item": ("name",),
 }
@@ -41,9 +41,11 @@ _CHILDREN = {
     "category": ("trace",),
     "intensity": ("trace",),
     "trace": (),
+    "reference": (),
     "vocabulary": ("item", "info"),
     "item": ("info",),
 }
+_ROLES = ("expressedBy", "experiencedBy", "triggeredBy", "targetedAt")
 _NUMBER = re.compile(r"[-+]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][-+]?\d+)?", re.ASCII)
 _WHOLE = re.compile(r"[-+]?\d{1,15}", re.ASCII)
 _HERTZ = re.compile(r"(\d+(?:\.\d*)?)\s*Hz", re.ASCII)
@@ -55,15 +57,15 @@ Curve = tuple[tuple[float, ...], float]
 def read_emotionml(data: bytes, where: Path | str = "document.xml") -> Score:
     """What a document tells the face to show, and when; ``where`` is what messages call it.
 
-    The categories of ``big6``, or of a vocabulary in the document that names some of the same six, become cues of
-    their ``value`` or ``trace``; without either, of the emotion's ``intensity``, or 1. Of an emotion that has
-    categories, dimensions, appraisals and action tendencies are left out, and so is every ``confidence``. Times are
-    as in :func:`agentface.io.emotion_times.spans_of`; without any, an emotion lasts as long as its longest trace, or
-    2 s.
+    The categories of the published vocabularies, or of one in the document, that mean one of the six or ``neutral``
+    become cues of their ``value`` or ``trace``; without either, of the emotion's ``intensity``, or 1. Dimensions,
+    appraisals and action tendencies are left out, and so is every ``confidence``. Beside emotions with categories, one
+    that has only others takes its time and shows nothing; the score's ``notes`` say so. Times are as in
+    :func:`agentface.io.emotion_times.spans_of`; without any, an emotion lasts as long as its longest trace, or 2 s.
 
     Raises DataError with every fault: XML that is not well-formed or has a document type, what the Recommendation
-    does not allow, other vocabularies, emotions without a category, more than ``LARGEST_FILE`` bytes,
-    ``MOST_EMOTIONS`` emotions, or an hour.
+    does not allow, other vocabularies, categories that the face does not show, no emotion with a category, more than
+    ``LARGEST_FILE`` bytes, ``MOST_EMOTIONS`` emotions, or an hour.
     """
     path = Path(where)
     if len(data) > LARGEST_FILE:
@@ -72,7 +74,7 @@ def read_emotionml(data: bytes, where: Path | str = "document.xml") -> Score:
     cues = reader.read(read_xml(data, path))
     if reader.faults:
         raise DataError(sorted(reader.faults, key=lambda fault: fault.line or 0))
-    return Score(cues)
+    return Score(cues, reader.notes)
 
 
 def load_emotionml(path: Path) -> Score:
@@ -88,7 +90,8 @@ def load_emotionml(path: Path) -> Score:
 @dataclass(slots=True)
 class _Emotion:
     timing: Timing
-    curves: dict[str, Curve]
+    curves: list[tuple[str, Curve]]
+    others: str
 
 
 class _Reader:
@@ -97,7 +100,8 @@ class _Reader:
     def __init__(self, path: Path) -> None:
         self.path = path
         self.faults: list[Fault] = []
-        self._vocabularies: dict[str, tuple[str, ...]] = {BIG6: tuple(sorted(EMOTIONS))}
+        self.notes: list[Fault] = []
+        self._vocabularies = Vocabularies()
 
     def read(self, root: Element) -> list[Cue]:
         if root.namespace != NAMESPACE or root.name not in ("emotionml", "emotion"):
@@ -110,7 +114,7 @@ class _Reader:
             self._version(root, "emotionml")
             for child in children:
                 if child.name == "vocabulary":
-                    self._vocabulary(child)
+                    self._vocabularies.declare(child, self._items(child), self._tell)
         elements = [child for child in children if child.name == "emotion"]
         if len(elements) > MOST_EMOTIONS:
             got = f"{len(elements)}"
@@ -118,17 +122,29 @@ class _Reader:
             return []
         sets = root.attributes if whole else {}
         emotions = [self._emotion(element, sets, number) for number, element in enumerate(elements, start=1)]
-        spans = spans_of([emotion.timing for emotion in emotions], self._tell)
+        self._note_others(emotions)
+        spans = spans_of([emotion.timing for emotion in emotions], self._tell, self._note)
         if self.faults:
             return []
         return [
             Cue(name, start, end, *curve)
             for emotion, (start, end) in zip(emotions, spans, strict=True)
-            for name, curve in emotion.curves.items()
+            for name, curve in emotion.curves
         ]
 
     def _tell(self, line: int, where: str, expected: str, got: str, hint: str = "") -> None:
         self.faults.append(Fault(self.path, line, where, expected, got, hint))
+
+    def _note(self, line: int, where: str, expected: str, got: str, hint: str = "") -> None:
+        self.notes.append(Fault(self.path, line, where, expected, got, hint))
+
+    def _note_others(self, emotions: list[_Emotion]) -> None:
+        """Emotions with nothing that the face shows are left out beside others, and a fault where there is no other."""
+        say = self._note if any(emotion.others == "" for emotion in emotions) else self._tell
+        for emotion in emotions:
+            if emotion.others:
+                timing = emotion.timing
+                say(timing.line, timing.where, "a category", emotion.others, "the face shows categories alone")
 
     def _children(self, element: Element, where: str) -> list[Element]:
         """The children that may be there; the others, and attributes that may not, are told."""
@@ -150,13 +166,11 @@ class _Reader:
         if version.strip() != "1.0":
             self._tell(element.line, f"{where}.version", "1.0", version)
 
-    def _vocabulary(self, element: Element) -> None:
-        items = tuple(item.attributes.get("name", "").strip() for item in self._children(element, "vocabulary"))
-        name = element.attributes.get("id", "").strip()
-        if not name:
-            self._tell(element.line, "vocabulary", "an id", "none")
-        if element.attributes.get("type") == "category":
-            self._vocabularies[f"#{name}"] = items
+    def _items(self, vocabulary: Element) -> list[Element]:
+        items = [child for child in self._children(vocabulary, "vocabulary") if child.name == "item"]
+        for item in items:
+            self._children(item, "vocabulary.item")
+        return items
 
     def _emotion(self, element: Element, sets: dict[str, str], number: int) -> _Emotion:
         where = f"emotion {number}"
@@ -164,15 +178,30 @@ class _Reader:
         self._version(element, where)
         sets = {**sets, **element.attributes}
         intensity = self._intensity(children, sets, where)
-        curves: dict[str, Curve] = {}
+        curves: dict[str, tuple[str, Curve]] = {}
         for child in children:
             if child.name == "category":
                 self._category(child, sets.get("category-set"), where, curves, intensity)
+            elif child.name == "reference":
+                self._reference(child, f"{where}.reference")
+        others = ""
+        lasting = [curve for _, curve in curves.values()]
         if not any(child.name == "category" for child in children):
-            others = " and ".join(dict.fromkeys(child.name for child in children if child.name in _OTHERS))
-            self._tell(element.line, where, "a category", others or "none", "the face shows categories alone")
-        longest = max((1000.0 * len(samples) / rate for samples, rate in curves.values() if rate), default=LASTS_MS)
-        return _Emotion(self._timing(element, where, longest), curves)
+            unseen = [child for child in children if child.name in _OTHERS]
+            others = " and ".join(dict.fromkeys(child.name for child in unseen))
+            lasting = [curve for child in unseen if (curve := self._curve(child, f"{where}.{child.name}"))]
+            if not others:
+                self._tell(element.line, where, "a category", "none", "the face shows categories alone")
+        longest = max((1000.0 * len(samples) / rate for samples, rate in lasting if rate), default=LASTS_MS)
+        return _Emotion(self._timing(element, where, longest), list(curves.values()), others)
+
+    def _reference(self, element: Element, where: str) -> None:
+        self._children(element, where)
+        if not element.attributes.get("uri", "").strip():
+            self._tell(element.line, f"{where}.uri", "what it refers to", "nothing")
+        role = element.attributes.get("role", _ROLES[0]).strip()
+        if role not in _ROLES:
+            self._tell(element.line, f"{where}.role", f"one of {', '.join(_ROLES)}", repr(role))
 
     def _intensity(self, children: list[Element], sets: dict[str, str], where: str) -> Curve:
         """What categories without a value take: the dimension of that name, or the element of earlier drafts."""
@@ -191,26 +220,30 @@ class _Reader:
         return curve or ((1.0,), 0.0)
 
     def _category(
-        self, element: Element, chosen: str | None, where: str, curves: dict[str, Curve], intensity: Curve
+        self, element: Element, chosen: str | None, where: str, curves: dict[str, tuple[str, Curve]], intensity: Curve
     ) -> None:
         name = _name(element)
         where = f"{where}.category {name or '?'}"
         curve = self._curve(element, where) or intensity
         self._children(element, where)
-        known = self._vocabularies.get((chosen or "").strip())
+        known = self._vocabularies.names(chosen)
         if known is None:
             hint = f'category-set="{BIG6}" is the one that the face shows'
-            self._tell(element.line, where, "the vocabulary big6", repr(chosen) if chosen else "no category-set", hint)
-        elif name not in known:
-            near = ALIASES.get(name.lower())
-            hint = f"did you mean {near}?" if near in known else did_you_mean(name, known)
+            expected = f"the vocabulary {', '.join(published())}, or one of the document"
+            self._tell(element.line, where, expected, repr(chosen) if chosen else "no category-set", hint)
+            return
+        emotion = shown_as(name)
+        if name not in known:
+            same = next((other for other in known if emotion and shown_as(other) == emotion), None)
+            hint = f"did you mean {same}?" if same else did_you_mean(name, known)
             self._tell(element.line, where, "a name of the vocabulary", repr(name), hint)
-        elif name not in EMOTIONS:
-            self._tell(element.line, where, "an emotion that the face shows", repr(name), did_you_mean(name, EMOTIONS))
+        elif emotion is None:
+            shown = [other for other in known if shown_as(other)]
+            self._tell(element.line, where, "an emotion that the face shows", repr(name), did_you_mean(name, shown))
         elif name in curves:
             self._tell(element.line, where, "each category once in an emotion", "the category a second time")
         else:
-            curves[name] = curve
+            curves[name] = (emotion, curve)
 
     def _curve(self, element: Element, where: str) -> Curve | None:
         """The value or the trace of an element; None where it has neither, or none that can be read."""
@@ -229,10 +262,10 @@ class _Reader:
 
     def _fraction(self, text: str, line: int, where: str) -> float | None:
         number = float(text) if _NUMBER.fullmatch(text.strip()) else -1.0
-        if not 0.0 <= number <= 1.0:
+        if not -ROUNDING <= number <= 1.0 + ROUNDING:
             self._tell(line, where, "a number in 0..1", repr(text))
             return None
-        return number
+        return min(max(number, 0.0), 1.0)
 
     def _trace(self, element: Element, where: str) -> Curve | None:
         self._children(element, where)
@@ -263,6 +296,9 @@ class _Reader:
             duration = max(end - start, 0)
         elif end is not None:
             start = end - round(duration or lasts)
+        name = given["id"].strip() if "id" in given else None
+        if name is not None and not is_id(name):
+            self._tell(element.line, f"{where}.id", "an id that begins with a letter", repr(name))
         anchor = given.get("time-ref-anchor-point", "start").strip()
         if anchor not in ("start", "end"):
             self._tell(element.line, f"{where}.time-ref-anchor-point", "start or end", repr(anchor))
@@ -270,7 +306,7 @@ class _Reader:
             line=element.line,
             where=where,
             lasts=lasts,
-            name=given["id"].strip() if "id" in given else None,
+            name=name,
             start=start,
             duration=duration or None,  # the Recommendation's default, 0, says no more than that it happened
             offset=offset,

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from agentface.conventions import SIDES
-from agentface.emotion.state import EMOTIONS
+from agentface.emotion.state import EMOTIONS, NEUTRAL
 from agentface.parameters import GROUPS as GROUPS_OF_PARAMETERS
 from agentface.parameters import MUSCLES, NAMES, PARAMETERS, parameter
 
@@ -53,6 +53,7 @@ PRESETS: dict[str, dict[str, float]] = {
     "anguish": {"sadness": 0.8, "fear": 0.8},
     "alarm": {"fear": 0.8, "surprise": 0.8},
     "amused contempt": {"happiness": 0.6, "disgust": 0.6},
+    NEUTRAL: {},
 }
 
 

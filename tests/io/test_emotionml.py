@@ -11,9 +11,8 @@ from hypothesis import strategies as st
 from agentface.emotion.score import Cue
 from agentface.emotion.state import EMOTIONS, EmotionState
 from agentface.errors import DataError
+from agentface.io.emotion_vocabularies import BIG6, INTENSITY, published, shown_as
 from agentface.io.emotionml import (
-    BIG6,
-    INTENSITY,
     LARGEST_FILE,
     MOST_EMOTIONS,
     NAMESPACE,
@@ -22,6 +21,8 @@ from agentface.io.emotionml import (
 )
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "moods.xml"
+PUBLISHED = "http://www.w3.org/TR/emotion-voc/xml#"
+SESSION = {"time_ref_uri": "#session", "time_ref_anchor_point": "end"}
 FEAR = '<category name="fear"/>'
 
 
@@ -137,6 +138,105 @@ def test_a_vocabulary_of_the_document():
 
 
 @pytest.mark.parametrize(
+    ("vocabulary", "name", "shown"),
+    [
+        ("everyday-categories", "angry", "anger"),
+        ("everyday-categories", "afraid", "fear"),
+        ("everyday-categories", "happy", "happiness"),
+        ("everyday-categories", "sad", "sadness"),
+        ("occ-categories", "joy", "happiness"),
+        ("fsre-categories", "disgust", "disgust"),
+        ("frijda-categories", "surprise", "surprise"),
+        ("big6", "fear", "fear"),
+    ],
+)
+def test_the_published_vocabularies_are_known(vocabulary, name, shown):
+    said = emotion(f'<category name="{name}" value="0.5"/>', category_set=f"{PUBLISHED}{vocabulary}")
+    assert read_emotionml(document(said, attributes="")).cues == (Cue(shown, 0.0, 2.0, (0.5,)),)
+
+
+def test_every_published_name_is_shown_or_refused_as_one_that_is_not():
+    for vocabulary, names in published().items():
+        for name in names:
+            data = document(emotion(f'<category name="{name}"/>', category_set=f"{PUBLISHED}{vocabulary}"))
+            if shown_as(name):
+                assert [cue.emotion for cue in read_emotionml(data).cues] == [shown_as(name)]
+            else:
+                assert "an emotion that the face shows" in faults(data)[0]
+
+
+def test_neutral_in_a_vocabulary_of_the_document_lets_go():
+    vocabulary = '<vocabulary type="category" id="mine"><item name="neutral"/><item name="angry"/></vocabulary>'
+    angry = emotion('<category name="angry" value="0.8"/>', category_set="#mine", duration=4000)
+    calm = emotion('<category name="neutral"/>', category_set="#mine", offset_to_start=1000, duration=1000)
+    some = emotion('<category name="neutral" value="0.5"/>', category_set="#mine", offset_to_start=2000, duration=1000)
+    score = read_emotionml(document(vocabulary, angry, calm, some, attributes=""))
+    levels = [score.state(time)["anger"] for time in (0.5, 1.5, 2.5, 3.5)]
+    assert levels == [0.8, 0.0, 0.5, 0.8]
+    assert "neutral" in the_fault(emotion('<category name="neutral"/>')), "big6 has no such name"
+
+
+def test_an_emotion_of_dimensions_beside_others_takes_its_time_and_is_noted():
+    arousal = '<dimension name="arousal"><trace freq="10Hz" samples="0 0.5 1 0.5 0"/></dimension>'
+    score = read_emotionml(document(emotion(), emotion(arousal, dimension_set="urn:x"), emotion()), "moods.xml")
+    assert [(cue.start_s, cue.end_s) for cue in score.cues] == [(0.0, 2.0), (2.5, 4.5)]
+    (note,) = map(str, score.notes)
+    assert note.startswith("moods.xml:3: emotion 2: expected a category, got dimension")
+
+
+def test_a_reference_out_of_the_document_is_noted():
+    data = document(emotion(id="first"), emotion(time_ref_uri="#fisrt"), emotion(time_ref_uri="file:talk.avi"))
+    (note,) = map(str, read_emotionml(data, "moods.xml").notes)
+    assert note.startswith("moods.xml:3: emotion 2.time-ref-uri")
+    assert "did you mean #first?" in note
+
+
+@pytest.mark.parametrize(
+    ("vocabulary", "messages"),
+    [
+        ('<vocabulary type="category" id="a"/>', ["at least one <item>"]),
+        ('<vocabulary type="category"><item name="fear"/></vocabulary>', ["vocabulary.id: expected an id"]),
+        ('<vocabulary id="a"><item name="fear"/></vocabulary>', ["vocabulary.type: expected one of category"]),
+        (
+            '<vocabulary type="somethingelse" id="1x"><item/><item name="anger"/><item name="anger"/></vocabulary>',
+            ["got '1x'", "got 'somethingelse'", "a word, got nothing", "each name once, got 'anger' again"],
+        ),
+        (
+            '<vocabulary type="dimension" id="a"><item name="x"/></vocabulary>' * 2,
+            ["an id of its own, got 'a' again"],
+        ),
+        ('<vocabulary type="category" id="a"><item name="so so"/></vocabulary>', ["'so so'"]),
+        ('<vocabulary type="category" id="a"><item nmae="fear" name="x"/></vocabulary>', ["got 'nmae'"]),
+    ],
+)
+def test_what_a_vocabulary_lacks_is_told(vocabulary, messages):
+    found = faults(document(vocabulary, emotion()))
+    assert len(found) == len(messages)
+    assert all(message in fault for message, fault in zip(messages, found, strict=True))
+
+
+@pytest.mark.parametrize(
+    ("value", "level"), [("1.0000001", 1.0), ("-1e-7", 0.0), ("1.000002", None), ("-0.00001", None)]
+)
+def test_values_that_rounding_puts_outside_are_taken(value, level):
+    data = document(emotion(f'<category name="fear" value="{value}"/>'))
+    if level is None:
+        assert "0..1" in faults(data)[0]
+    else:
+        assert read_emotionml(data).cues == (Cue("fear", 0.0, 2.0, (level,)),)
+
+
+def test_what_other_programs_write_beside_it_is_read():
+    attributes = (
+        f'category-set="{BIG6}" xml:lang="de" xml:base="http://example.org/"'
+        ' xmlns:xsi="http://www.w3.org/2001/XMLSchema-instance"'
+        ' xsi:schemaLocation="http://www.w3.org/2009/10/emotionml http://www.w3.org/TR/emotionml/emotionml.xsd"'
+    )
+    said = f'<emotion xml:lang="de">wütend {FEAR}</emotion>'
+    assert read_emotionml(document(said, attributes=attributes)).cues == (Cue("fear", 0.0, 2.0),)
+
+
+@pytest.mark.parametrize(
     ("said", "expected"),
     [
         ([{}, {}], [(0.0, 2.0), (2.0, 4.0)]),
@@ -152,6 +252,14 @@ def test_a_vocabulary_of_the_document():
         ([{"id": "a"}, {"time_ref_uri": "#a", "time_ref_anchor_point": "end"}], [(0.0, 2.0), (2.0, 4.0)]),
         ([{"time_ref_uri": "#b", "offset_to_start": -400}, {"id": "b", "start": 8}], [(0.0, 2.0), (0.4, 2.4)]),
         ([{"time_ref_uri": "file:talk.avi", "offset_to_start": 1500}], [(1.5, 3.5)]),
+        (
+            [{"time_ref_uri": "#session", "time_ref_anchor_point": "end", "offset_to_start": -1000, "duration": 3000}],
+            [(0.0, 3.0)],
+        ),
+        (
+            [{}, {"time_ref_uri": "file:x", "time_ref_anchor_point": "end", "offset_to_start": 500}],
+            [(0.0, 2.0), (0.5, 2.5)],
+        ),
     ],
 )
 def test_times(said, expected):
@@ -176,7 +284,14 @@ def test_a_long_chain_of_references():
         ('<category name="fear" value="1_0"/>', {}, "'1_0'"),
         ('<category name="fear" confidence="2"/>', {}, "confidence"),
         (FEAR + FEAR, {}, "each category once"),
-        (FEAR, {"category_set": "http://www.w3.org/TR/emotion-voc/xml#occ-categories"}, "the vocabulary big6"),
+        (FEAR, {"category_set": "http://www.w3.org/TR/emotion-voc/xml#pad-dimensions"}, "the vocabulary big6"),
+        (FEAR, {"category_set": f"{PUBLISHED}everyday-categories"}, "did you mean afraid"),
+        ('<category name="bored"/>', {"category_set": f"{PUBLISHED}everyday-categories"}, "afraid, angry, happy, sad"),
+        (FEAR + "<reference/>", {}, "reference.uri: expected what it refers to, got nothing"),
+        (FEAR + '<reference uri="  "/>', {}, "reference.uri"),
+        (FEAR + '<reference uri="#x" role="because"/>', {}, "expressedBy, experiencedBy, triggeredBy, targetedAt"),
+        (FEAR + '<reference uri="#x" url="y"/>', {}, "no such attribute, got 'url'"),
+        (FEAR, {"id": "1x"}, "id: expected an id that begins with a letter, got '1x'"),
         ('<dimension name="arousal" value="1"/>', {}, "a category, got dimension"),
         ("", {}, "a category, got none"),
         ('<category name="fear"><trace freq="10" samples="0"/></category>', {}, "like 10Hz, got '10'"),
@@ -199,8 +314,6 @@ def test_a_long_chain_of_references():
         (FEAR, {"start": 5, "end": 4}, "start 5, end 4"),
         (FEAR, {"start": 5, "end": 9, "duration": 5}, "duration 5"),
         (FEAR, {"start": 5, "offset_to_start": 4}, "absolute or relative"),
-        (FEAR, {"time_ref_uri": "#nobody"}, "the id of an emotion, got '#nobody'"),
-        (FEAR, {"time_ref_uri": "file:x", "time_ref_anchor_point": "end"}, "its end is not known"),
         (FEAR, {"time_ref_anchor_point": "middle"}, "start or end"),
         (FEAR, {"id": "me", "time_ref_uri": "#me"}, "a circle"),
         (FEAR, {"duration": 3_600_001}, "within 3600 s"),
@@ -219,9 +332,7 @@ def test_circles_and_names_of_more_than_one():
 
 
 def test_all_faults_at_once():
-    data = document(
-        emotion('<category name="joy" value="2"/>'), emotion(start="soon"), emotion(time_ref_uri="#x"), "<emotoin/>"
-    )
+    data = document(emotion('<category name="joy" value="2"/>'), emotion(start="soon"), emotion(id="2"), "<emotoin/>")
     found = faults(data)
     assert [fault.split(": ")[0] for fault in found] == [f"moods.xml:{line}" for line in (2, 2, 3, 4, 5)]
 

@@ -9,7 +9,8 @@ from agentface import Face
 from agentface.emotion.state import EMOTIONS, EmotionState
 from agentface.errors import UnknownNameError
 from agentface.parameters import MUSCLES, PARAMETERS
-from agentface.window.controls import ANGLES, Controls, bounds
+from agentface.requests import Blink, SetEmotion, SetMuscle, SetParameter
+from agentface.window.controls import ANGLES, FADE_S, Controls, bounds
 from agentface.window.history import LEVELS, History
 from agentface.window.menu import GROUPS, KEYS, PRESETS, help_text, sides
 
@@ -84,6 +85,28 @@ def test_a_muscle_given_back_moves_with_the_emotion_again(controls):
     controls.change({"zygomaticus_major_l": None})
     controls.face.step(1.0)
     assert controls.face.pose["zygomaticus_major_l"] == smile > 0.3
+
+
+def test_neutral_is_a_preset_that_keeps_the_muscles(controls):
+    controls.change({"anger": 0.4, "risorius_l": 0.5, "head_roll": -3.0})
+    controls.preset("neutral")
+    assert controls.face.emotion == EmotionState()
+    assert controls.values()["risorius_l"] == 0.5
+    assert controls.values()["head_roll"] == -3.0
+
+
+def test_the_panel_makes_the_requests_that_other_programs_make(controls):
+    noted = []
+    controls.face.noted.append(noted.append)
+    controls.change({"happiness": 0.5, "risorius_l": 0.25, "head_yaw": 10.0})
+    controls.key("Space")
+    controls.face.noted.remove(noted.append)
+    assert noted == [
+        SetEmotion("happiness", 0.5, FADE_S),
+        SetMuscle("risorius_l", 0.25, FADE_S),
+        SetParameter("head_yaw_deg", 10.0, FADE_S),
+        Blink(),
+    ]
 
 
 def test_a_preset_sets_all_emotions_and_leaves_muscles(controls):
