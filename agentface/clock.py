@@ -1,9 +1,11 @@
-"""Clocks, passed in wherever time is read, so that tests and recordings own the time."""
+"""Clocks, passed in wherever time is read, so that tests and films own the time."""
 
 from __future__ import annotations
 
 import time
 from typing import Protocol
+
+from agentface.conventions import check_rate
 
 
 class Clock(Protocol):
@@ -16,7 +18,7 @@ class Clock(Protocol):
         """Seconds since 1 January 1970, UTC."""
 
     def sleep(self, seconds: float) -> None:
-        """Wait."""
+        """Wait; a clock may wake up earlier, when there is something to do."""
 
 
 class SystemClock:
@@ -35,20 +37,24 @@ class SystemClock:
         time.sleep(max(0.0, seconds))
 
 
-class ManualClock:
-    """A clock that moves only when it is told to; waiting moves it."""
+class FrameClock:
+    """A clock for what is not made in real time: whole frames, ``fps`` a second; waiting takes none.
 
-    def __init__(self, start: float = 0.0, date: float = 1_000_000_000.0) -> None:
-        self._now, self._offset = start, date - start
+    Raises InvalidValueError for a rate that is none.
+    """
+
+    def __init__(self, fps: float) -> None:
+        self._fps = check_rate("fps", fps)
+        self._frame = 0
 
     def now(self) -> float:
-        """The seconds it was moved, plus ``start``."""
-        return self._now
+        """The frames so far, in seconds."""
+        return self._frame / self._fps
 
     def date(self) -> float:
-        """The date it was given at the start, plus the seconds it was moved."""
-        return self._now + self._offset
+        """The same: such a clock begins in 1970."""
+        return self.now()
 
     def sleep(self, seconds: float) -> None:
-        """Move the clock on."""
-        self._now += max(0.0, seconds)
+        """Go to the frame that is nearest to so many seconds from now, and at least to the next one."""
+        self._frame += max(1, round(seconds * self._fps))

@@ -22,6 +22,8 @@ Indices: TypeAlias = npt.NDArray[np.int32]
 Bytes: TypeAlias = npt.NDArray[np.uint8]
 
 SIDES = ("l", "r")
+FASTEST_HZ = 1000.0
+"""No frames come faster."""
 ROUNDING = 1e-6
 """How far outside of its range a number is taken to be by rounding, in parts of the larger limit.
 
@@ -64,6 +66,14 @@ def check_duration(where: str, value: Any) -> float:
     number = check_finite(where, value)
     if number < 0.0:
         raise InvalidValueError(where, "a number of seconds, zero or more", value)
+    return number
+
+
+def check_rate(where: str, value: Any) -> float:
+    """``value`` as a number a second, more than 0 and at most ``FASTEST_HZ``; raises InvalidValueError."""
+    number = check_finite(where, value)
+    if not 0.0 < number <= FASTEST_HZ:
+        raise InvalidValueError(where, f"a number a second, more than 0 and at most {FASTEST_HZ:g}", value)
     return number
 
 

@@ -85,8 +85,6 @@ class Face:
         self.model = face if isinstance(face, HeadModel) else load_model(face, asymmetry=asymmetry)
         self.random = np.random.default_rng(seed)
         self.message_counts = MessageCounts()
-        self.inputs: list[Callable[[], None]] = []
-        """Called at the start of every step: where servers hand over what came in."""
         self.noted: list[Callable[[Request], None]] = []
         """Called with every request after it was applied: who steps a face again later notes them here."""
         self._clock = clock or SystemClock()
@@ -175,13 +173,11 @@ class Face:
         self.apply(Blink())
 
     def step(self, dt: float) -> FaceGeometry:
-        """Take in what came from outside, let ``dt`` seconds pass, and return the face as it is then.
+        """Let ``dt`` seconds pass, and return the face as it is then.
 
         The arrays of the geometry hold until this face's next step; ``copy()`` keeps them.
         """
         dt = check_duration("dt", dt)
-        for take_in in self.inputs:
-            take_in()
         start = self._clock.now()
         self.channels.advance(dt)
         self._touch()

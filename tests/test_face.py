@@ -13,9 +13,9 @@ import pytest
 
 import agentface
 from agentface import AgentFaceError, EmotionState, Face, FacePose
-from agentface.clock import ManualClock
 from agentface.errors import InvalidValueError, UnknownNameError
 from agentface.head.model import load_model
+from tests.clocks import ManualClock
 from tests.heads import head_model
 
 KEYS = ["face", "emotion", "shown", "speech", "gaze_deg", "frame_ms", "messages", "errors"]

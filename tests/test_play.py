@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import os
 import shutil
+import signal
 import subprocess
 import sys
 
@@ -60,13 +61,14 @@ def test_a_film_has_a_frame_at_every_step_and_is_the_same_twice(short, tmp_path)
 @pytest.mark.gl
 def test_a_film_shows_what_the_document_says_from_neutral_to_neutral(monkeypatch, short, tmp_path):
     levels = []
-    render = Face.render
+    step = Face.step
 
-    def noted(face, *arguments, **options):
+    def noted(face, dt):
+        geometry = step(face, dt)
         levels.append(face.status()["shown"]["emotion"]["surprise"])
-        return render(face, *arguments, **options)
+        return geometry
 
-    monkeypatch.setattr(Face, "render", noted)
+    monkeypatch.setattr(Face, "step", noted)
     assert call(short, "-o", tmp_path / "a.mp4", "--size", "64x64", "--fps", "60").exit_code == 0
     assert len(levels) == len(frames(tmp_path / "a.mp4")) == 30
     assert levels[0] == 0.0
@@ -87,24 +89,27 @@ def test_a_film_of_numbered_pictures_is_transparent(short, tmp_path):
 
 
 @pytest.mark.gl
-@pytest.mark.parametrize(("error", "code", "left"), [(GraphicsError("lost"), 1, None), (KeyboardInterrupt(), 130, 3)])
-def test_an_error_leaves_no_file_and_an_interrupt_what_was_filmed(monkeypatch, short, tmp_path, error, code, left):
-    steps = iter([None, None, error])
+@pytest.mark.parametrize("told", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP, "lost"])
+def test_an_error_leaves_no_file_and_a_signal_what_was_filmed(monkeypatch, short, tmp_path, told):
+    steps = iter([None, None, told])
     step = Face.step
 
     def failing(face, dt):
-        if (failure := next(steps)) is not None:
-            raise failure
+        if (failure := next(steps)) == "lost":
+            raise GraphicsError(failure)
+        if failure is not None:
+            signal.raise_signal(failure)
+            signal.raise_signal(failure)  # a second one, while it ends
         return step(face, dt)
 
     monkeypatch.setattr(Face, "step", failing)
     path = tmp_path / "a.mp4"
-    said = fail(short, "-o", path, *SMALL, code=code)
-    assert path.exists() == (left is not None)
-    if left is None:
+    said = fail(short, "-o", path, *SMALL, code=1 if told == "lost" else 128 + told)
+    assert path.exists() == (told != "lost")
+    if told == "lost":
         assert "lost" in said
     else:
-        assert len(frames(path)) == left
+        assert len(frames(path)) == 3
         assert f"{path}: stopped at 0.2 s of 0.5 s" in said
 
 

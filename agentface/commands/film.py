@@ -1,64 +1,92 @@
-"""What commands that film share: the writer, the progress bar, and how SIGTERM ends them."""
+"""What commands that film share: how a film is seen, where it goes, and the bar of its progress."""
 
 from __future__ import annotations
 
-import signal
+import sys
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from agentface.face import Face
+    from agentface.conventions import Bytes
+    from agentface.deform.geometry import FaceGeometry
+    from agentface.head.model import HeadModel
     from agentface.io.sequence import SequenceWriter
     from agentface.io.video import VideoWriter
-    from agentface.parameters import FacePose
-
-Draw = Callable[["FacePose | None", float], None]
-"""``draw(pose, time_s)`` adds a frame: of a pose, or for None of the face as it is then."""
+    from agentface.live.films import FilmSink
 
 
 @dataclass(frozen=True)
-class Film:
-    """Where a film goes and how it is seen; a path that ends with .png is that of numbered transparent pictures."""
+class Shot:
+    """How a film is seen and where it goes; a path that ends with .png is that of numbered transparent pictures.
+
+    ``live``: it cannot be filmed again, so that an error keeps what there is.
+    """
 
     path: Path
     size: tuple[int, int]
     camera: str
     quality: str
     fps: float
+    look: str | None = None
+    live: bool = False
 
     @contextmanager
-    def open(self, face: Face, last_s: float | None) -> Iterator[Draw]:
-        """Films ``face`` until the end of the block; the bar is full at ``last_s``, without it there is none."""
-        transparent = self.path.suffix.lower() == ".png"
+    def open(self, model: HeadModel, last_s: float | None = None) -> Iterator[FilmSink]:
+        """Films ``model`` until the end of the block; the bar is full at ``last_s``, without it there is none.
+
+        What cannot be written or drawn is told at its beginning, and then, as without frames, no file is left. All of
+        it is for one thread: OpenGL draws in the one that begins.
+        """
+        from agentface.live.films import FilmSink
+
         with self._writer() as writer, _progress(self.path.name, last_s) as advance:
+            yield FilmSink(self._drawing(model), writer, advance)
 
-            def draw(pose: FacePose | None, time_s: float) -> None:
-                writer.add(face.render(self.size, self.camera, self.quality, pose=pose, alpha=transparent), time_s)
-                advance(time_s)
+    def _drawing(self, model: HeadModel) -> Callable[[FaceGeometry], Bytes]:
+        from agentface.deform.geometry import FaceGeometry
+        from agentface.head.look import load_look
+        from agentface.view.renderer import Renderer
 
-            yield draw
+        renderer = Renderer(model, load_look(model, self.look))
+
+        def draw(geometry: FaceGeometry) -> Bytes:
+            return renderer.render(geometry, self.size, self.camera, self.quality, alpha=self._transparent)
+
+        # the first picture takes a driver longer than those that follow
+        draw(FaceGeometry.at_rest(model.vertices, model.normals, len(model.trains)))
+        return draw
+
+    @property
+    def _transparent(self) -> bool:
+        return self.path.suffix.lower() == ".png"
 
     def _writer(self) -> VideoWriter | SequenceWriter:
-        if self.path.suffix.lower() == ".png":
+        if self._transparent:
             from agentface.io.sequence import SequenceWriter
 
-            return SequenceWriter(self.path, self.size, self.fps)
+            return SequenceWriter(self.path, self.size, self.fps, keep=self.live)
         from agentface.io.video import VideoWriter
 
-        return VideoWriter(self.path, self.size, self.fps)
+        return VideoWriter(self.path, self.size, self.fps, keep=self.live)
 
 
-@contextmanager
-def terminated_as_interrupted() -> Iterator[None]:
-    """Inside, SIGTERM is what Ctrl-C is: KeyboardInterrupt."""
-    before = signal.signal(signal.SIGTERM, signal.default_int_handler)
-    try:
-        yield
-    finally:
-        signal.signal(signal.SIGTERM, before)
+class _Terminal:
+    """The standard error, which may go away with its terminal: what cannot be said is no reason to stop."""
+
+    def write(self, text: str) -> int:
+        with suppress(OSError, ValueError):
+            sys.stderr.write(text)
+        return len(text)
+
+    def flush(self) -> None:
+        with suppress(OSError, ValueError):
+            sys.stderr.flush()
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(sys.stderr, name)
 
 
 @contextmanager
@@ -66,7 +94,7 @@ def _progress(name: str, total_s: float | None) -> Iterator[Callable[[float], No
     from rich.console import Console
     from rich.progress import Progress
 
-    console = Console(stderr=True)
+    console = Console(file=_Terminal())  # type: ignore[arg-type]  # all of a file that is written to
     if total_s is None or not console.is_terminal:
         yield lambda _: None
         return

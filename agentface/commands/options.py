@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
+from click.core import ParameterSource
 
 from agentface.resources import DEFAULT_FACE
 
@@ -104,6 +105,11 @@ json_option = click.option(
 deformer_option = click.option(
     "--deformer", default="geometric", metavar="NAME", show_default=True, help="What makes a face of a pose."
 )
+
+
+def given(ctx: click.Context) -> set[str]:
+    """The names of the options that are on the command line."""
+    return {name for name in ctx.params if ctx.get_parameter_source(name) is ParameterSource.COMMANDLINE}
 
 
 def face_options(command: _Command) -> _Command:

@@ -3,18 +3,17 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
-from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
-from click.core import ParameterSource
 
-from agentface.commands.film import Film, terminated_as_interrupted
+from agentface.commands.ending import Ending, until_told
+from agentface.commands.film import Shot
 from agentface.commands.options import (
     camera_option,
     face_options,
+    given,
     live_quality_option,
     look_option,
     make_face,
@@ -27,8 +26,6 @@ if TYPE_CHECKING:
     from agentface.face import Face
 
 _MOST_NOTES = 5
-_STOPPED = 130
-"""The exit code of a command that Ctrl-C stopped."""
 
 
 @click.command()
@@ -70,20 +67,20 @@ def play(
     agentface play moods.xml
     agentface play moods.xml -o moods.mp4 --quality portrait
     """  # noqa: D301 - \b is click's mark of lines to keep
-    of_a_film = [name for name in ("fps", "size") if ctx.get_parameter_source(name) is ParameterSource.COMMANDLINE]
+    of_a_film = sorted(given(ctx) & {"fps", "size"})
     if output is None and of_a_film:
         raise click.UsageError(f"--{of_a_film[0]} goes with -o")
     if output is not None and loop:
         raise click.UsageError("--loop goes without -o")
     score = _score(document)
     shown = make_face(face, deformer, look=look)
-    with terminated_as_interrupted():
+    with until_told() as ending:
         if output is not None:
-            _film(shown, score, Film(output, size, camera, quality or "fast", fps))
+            _film(shown, score, Shot(output, size, camera, quality or "fast", fps, look), ending)
             return
         shown.warm_up()
         try:
-            _show(shown, score, look, camera, quality, loop=loop)
+            _show(shown, score, ending, look, camera, quality, loop=loop)
         except GraphicsError as error:
             hint = f"To film the document instead:  agentface play {document} -o FILE.mp4"
             raise GraphicsError(f"{error}\n{hint}") from error
@@ -103,52 +100,28 @@ def _score(document: Path) -> Score:
     return score
 
 
-def _follower(face: Face, score: Score) -> Callable[[float], None]:
-    """Told the time, tells the face what is new in the score."""
-    from agentface.requests import SetEmotions
-
-    told = None
-
-    def follow(time_s: float) -> None:
-        nonlocal told
-        change = score.change(time_s)
-        if change is not told:
-            told = change
-            face.apply(SetEmotions(change.state, change.fade_s))
-
-    return follow
-
-
-def _show(face: Face, score: Score, look: str | None, camera: str, quality: str | None, *, loop: bool) -> None:
+def _show(
+    face: Face, score: Score, ending: Ending, look: str | None, camera: str, quality: str | None, *, loop: bool
+) -> None:
     from agentface.commands.show import make_window
+    from agentface.live.scores import ScorePlayer
 
-    window = make_window(face, look=look, quality=quality)
-    window.controls.look(camera)
-    follow = _follower(face, score)
-    start: float | None = None
-
-    def each_frame() -> None:
-        nonlocal start
-        start = window.clock() if start is None else start
-        time_s = window.clock() - start
-        window.controls.closing |= time_s >= score.length_s and not loop
-        follow(time_s % score.length_s if loop else time_s)
-
-    with suppress(KeyboardInterrupt):
-        window.run(each_frame)
+    window = make_window(face, look=look, quality=quality, camera=camera)
+    duration = math.inf if loop else score.length_s
+    window.run([ScorePlayer(face, score, again=loop)], duration=duration, stopped=ending.told)
 
 
-def _film(face: Face, score: Score, film: Film) -> None:
-    frames = math.ceil(score.length_s * film.fps - 1e-6)
-    follow, time_s = _follower(face, score), 0.0
-    try:
-        with film.open(face, (frames - 1) / film.fps) as draw:
-            for frame in range(frames):
-                if frame:
-                    face.step(1.0 / film.fps)
-                time_s = frame / film.fps
-                follow(time_s)
-                draw(None, time_s)
-    except KeyboardInterrupt:
-        click.echo(f"{film.path}: stopped at {time_s:.1f} s of {score.length_s:.1f} s", err=True)
-        raise SystemExit(_STOPPED) from None
+def _film(face: Face, score: Score, shot: Shot, ending: Ending) -> None:
+    from agentface.clock import FrameClock
+    from agentface.live.loop import run
+    from agentface.live.scores import ScorePlayer
+
+    fps, player = shot.fps, ScorePlayer(face, score)
+    frames = math.ceil(score.length_s * fps - 1e-6)
+    with shot.open(face.model, (frames - 1) / fps) as film:
+        end = (frames - 0.5) / fps
+        drawn = run(face, FrameClock(fps), [player], [film], fps=fps, duration=end, stopped=ending.told)
+    if drawn < frames:
+        filmed_s = max(drawn - 1, 0) / fps
+        click.echo(f"{shot.path}: stopped at {filmed_s:.1f} s of {score.length_s:.1f} s", err=True)
+        raise SystemExit(ending.code)

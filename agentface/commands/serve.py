@@ -3,20 +3,18 @@
 from __future__ import annotations
 
 import math
-import signal
-from collections.abc import Callable, Iterator
-from contextlib import AbstractContextManager, contextmanager, nullcontext, suppress
 from pathlib import Path
-from threading import Event
 from typing import TYPE_CHECKING
 
 import click
 
-from agentface.commands.film import Film, terminated_as_interrupted
+from agentface.commands.ending import Ending, until_told
+from agentface.commands.film import Shot
 from agentface.commands.options import (
     address,
     camera_option,
     face_options,
+    given,
     live_quality_option,
     look_option,
     make_face,
@@ -25,9 +23,8 @@ from agentface.commands.options import (
 
 if TYPE_CHECKING:
     from agentface.face import Face
-    from agentface.parameters import FacePose
+    from agentface.io.osc.server import OscServer
 
-_OnFrame = Callable[[float], None]
 _RECORD = "Film the face; a name like face-%05d.png gives numbered transparent pictures instead."
 
 
@@ -40,7 +37,7 @@ _RECORD = "Film the face; a name like face-%05d.png gives numbered transparent p
 @click.option(
     "--every-frame",
     is_flag=True,
-    help="Film without gaps: note the face in real time, draw the frames when the server stops.",
+    help="Film without gaps: note in real time what the face is asked, draw the frames when the server stops.",
 )
 @click.option("--duration", type=click.FloatRange(min=0, min_open=True), metavar="S", help="Stop after S seconds.")
 @click.option("--fps", type=click.FloatRange(1, 240), default=None, help="Frames a second: 60, or 30 when recording.")
@@ -49,7 +46,9 @@ _RECORD = "Film the face; a name like face-%05d.png gives numbered transparent p
 @live_quality_option
 @camera_option
 @face_options
+@click.pass_context
 def serve(
+    ctx: click.Context,
     *,
     osc: tuple[str, int],
     view: str,
@@ -68,82 +67,100 @@ def serve(
 
     Listens on this machine alone; --osc 0.0.0.0:7400 takes messages from others, too.
     """
-    if view == "window" and (record or duration or fps):
-        raise click.UsageError("--record, --duration and --fps go with --view none")
-    if every_frame and not record:
-        raise click.UsageError("--every-frame goes with --record")
-    if look and view == "none" and not record:
-        raise click.UsageError("--look goes with --view window or --record")
+    _check_options(given(ctx), window=view == "window", record=record is not None)
     from agentface.io.osc.server import OscServer
 
     shown = make_face(face, deformer, look=look)
     shown.warm_up()
-    with OscServer(shown, *osc) as server:
-        place = f"{server.host}:{server.port}"
+    with until_told() as ending, OscServer(shown, *osc) as server:
         if view == "window":
-            _open_window(shown, place, look, quality)
+            _in_a_window(server, shown, ending, look, quality, camera)
             return
         rate = fps or (30.0 if record else 60.0)
-        film = Film(record, size, camera, quality or "fast", rate) if record else None
-        # told to stop while it draws what it has noted, it keeps what is drawn
-        with (
-            terminated_as_interrupted(),
-            _filming(shown, film, duration, every_frame) as on_frame,
-            _until_told() as stop,
-        ):
-            from agentface.clock import SystemClock
-            from agentface.live.loop import run_live
-
-            _announce(shown, place)
-            run_live(shown, SystemClock(), stop, fps=rate, duration=duration or math.inf, on_frame=on_frame)
+        end = duration or math.inf
+        if record is None:
+            _run(server, shown, ending, rate, end)
+            return
+        shot = Shot(record, size, camera, quality or "fast", rate, look, live=True)
+        if every_frame:
+            _film_later(server, shown, ending, shot, end, make_face(face, deformer, look=look))
+        else:
+            _film_now(server, shown, ending, shot, end)
 
 
-def _announce(face: Face, place: str) -> None:
-    click.echo(f"{face.model.name} listens to OSC on {place}")
+def _check_options(names: set[str], *, window: bool, record: bool) -> None:
+    """Raise UsageError for the first option that would do nothing."""
+    for name, goes_with, there in (
+        ("record", "--view none", not window),
+        ("duration", "--view none", not window),
+        ("fps", "--view none", not window),
+        ("every_frame", "--record", record),
+        ("size", "--record", record),
+        ("look", "--view window or --record", window or record),
+        ("quality", "--view window or --record", window or record),
+        ("camera", "--view window or --record", window or record),
+    ):
+        if name in names and not there:
+            raise click.UsageError(f"--{name.replace('_', '-')} goes with {goes_with}")
 
 
-def _open_window(face: Face, place: str, look: str | None, quality: str | None) -> None:
+def _announce(face: Face, server: OscServer) -> None:
+    click.echo(f"{face.model.name} listens to OSC on {server.host}:{server.port}")
+
+
+def _in_a_window(
+    server: OscServer, face: Face, ending: Ending, look: str | None, quality: str | None, camera: str
+) -> None:
     from agentface.commands.show import make_window
 
-    window = make_window(face, look=look, quality=quality)
-    _announce(face, place)
-    with terminated_as_interrupted(), suppress(KeyboardInterrupt):
-        window.run()
+    window = make_window(face, look=look, quality=quality, camera=camera)
+    _announce(face, server)
+    window.run([server], stopped=ending.told)
 
 
-def _filming(
-    face: Face, film: Film | None, duration: float | None, every_frame: bool
-) -> AbstractContextManager[_OnFrame]:
-    if film is None:
-        return nullcontext(lambda _: None)
-    return _film_later(face, film) if every_frame else _film_now(face, film, duration)
+def _run(server: OscServer, face: Face, ending: Ending, fps: float, duration: float) -> None:
+    from agentface.clock import SystemClock
+    from agentface.live.loop import run
+
+    _announce(face, server)
+    run(face, SystemClock(), [server], fps=fps, duration=duration, stopped=ending.told)
 
 
-@contextmanager
-def _film_now(face: Face, film: Film, duration: float | None) -> Iterator[_OnFrame]:
-    with film.open(face, duration) as draw:
-        face.render(film.size, film.camera, film.quality)
-        yield lambda time_s: draw(None, time_s)
+def _film_now(server: OscServer, face: Face, ending: Ending, shot: Shot, duration: float) -> None:
+    from agentface.clock import SystemClock
+    from agentface.live.loop import run
+    from agentface.live.newest import LiveSink
+
+    with LiveSink(lambda: shot.open(face.model, duration if math.isfinite(duration) else None)) as film:
+        _announce(face, server)
+        frames = run(face, SystemClock(), [server], [film], fps=shot.fps, duration=duration, stopped=ending.told)
+    if film.dropped:
+        lost = f"{film.dropped} of {frames} frames are left out, as this machine draws too slowly for them"
+        click.echo(f"{shot.path}: {lost}; --every-frame films all of them", err=True)
 
 
-@contextmanager
-def _film_later(face: Face, film: Film) -> Iterator[_OnFrame]:
-    """As :func:`_film_now`, but drawn after the end: a slow machine films as smoothly as a fast one."""
-    with _film_now(face, film, None):
+def _film_later(server: OscServer, face: Face, ending: Ending, shot: Shot, duration: float, again: Face) -> None:
+    """As :func:`_film_now`, but ``again``, a face like the first, goes through it all when it is over.
+
+    A slow machine films as smoothly as a fast one, and a deformer with memory has the same one.
+    """
+    from agentface.clock import FrameClock, SystemClock
+    from agentface.live.loop import run
+    from agentface.live.notes import Recorder, Replay
+
+    with shot.open(face.model):
         pass  # what cannot be written or drawn is told before the recording
-    noted: list[tuple[FacePose, float]] = []
-    yield lambda time_s: noted.append((face.pose, time_s))
-    with film.open(face, noted[-1][1] if noted else None) as draw:
-        for pose, time_s in noted:
-            draw(pose, time_s)
-
-
-@contextmanager
-def _until_told() -> Iterator[Event]:
-    stop = Event()
-    before = {kind: signal.signal(kind, lambda *_: stop.set()) for kind in (signal.SIGINT, signal.SIGTERM)}
-    try:
-        yield stop
-    finally:
-        for kind, handler in before.items():
-            signal.signal(kind, handler)
+    _announce(face, server)
+    with Recorder(face) as recorder:
+        run(face, SystemClock(), [server], [recorder], fps=shot.fps, duration=duration, stopped=ending.told)
+    if recorder.last_s is None:
+        return
+    ending.go_on()  # told to stop again, it keeps what is drawn
+    last = round(recorder.last_s * shot.fps)
+    replay = Replay(again, recorder.notes, shot.fps)
+    with shot.open(face.model, last / shot.fps) as film:
+        end = (last + 0.5) / shot.fps
+        drawn = run(again, FrameClock(shot.fps), [replay], [film], fps=shot.fps, duration=end, stopped=ending.told)
+    if drawn <= last:
+        click.echo(f"{shot.path}: stopped at {(drawn - 1) / shot.fps:.1f} s of {last / shot.fps:.1f} s", err=True)
+        raise SystemExit(ending.code)

@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from contextlib import suppress
+from functools import partial
 from typing import TYPE_CHECKING
 
 import click
 
+from agentface.commands.ending import until_told
 from agentface.commands.options import face_options, live_quality_option, look_option, make_face
 
 if TYPE_CHECKING:
@@ -22,11 +25,16 @@ def show(*, quality: str | None, look: str | None, face: str, deformer: str) -> 
     """Open the live window: a panel with sliders, keys 1 to 6 for the emotions, the mouse for the view."""
     shown = make_face(face, deformer, look=look)
     shown.warm_up()
-    make_window(shown, look=look, quality=quality).run()
+    with until_told() as ending:
+        make_window(shown, look=look, quality=quality).run(stopped=ending.told)
 
 
 def make_window(
-    face: Face, say: Callable[[str], object] = click.echo, look: str | None = None, quality: str | None = None
+    face: Face,
+    say: Callable[[str], object] | None = None,
+    look: str | None = None,
+    quality: str | None = None,
+    camera: str = "front",
 ) -> Window:
     """A window that writes pictures and films into the current folder; ``quality``: what suits the driver if None."""
     from agentface.head.look import load_look
@@ -35,5 +43,13 @@ def make_window(
     from agentface.window.capture import Capture
     from agentface.window.window import Window
 
-    capture, worn = Capture(write_picture, VideoWriter, say), load_look(face.model, look)
-    return Window(face, capture=capture, look=worn, say=say, quality=quality)
+    say = say or _say
+    capture = Capture(write_picture, partial(VideoWriter, keep=True), say)
+    window = Window(face, capture=capture, look=load_look(face.model, look), say=say, quality=quality)
+    window.controls.look(camera)
+    return window
+
+
+def _say(message: str) -> None:
+    with suppress(OSError):  # the panel says it, too, and a terminal that is closed is no reason to close the window
+        click.echo(message)

@@ -8,7 +8,7 @@ from pathlib import Path
 from types import TracebackType
 from typing import Self
 
-from agentface.conventions import Bytes, check_finite
+from agentface.conventions import Bytes, check_finite, check_rate
 from agentface.errors import InvalidValueError, OutputError
 from agentface.io.files import check_writable, write_file
 from agentface.io.picture import encode
@@ -27,15 +27,16 @@ class SequenceWriter:
         path: ends in .png, with the place of the number as in ``frames/face-%05d.png``.
         size: width and height in pixels.
         fps: files a second.
+        keep: an error, too, leaves what is written until then: for what cannot be filmed again.
 
     Raises OutputError for another name, for a folder that cannot be written, and when it has such files already: what
     is left of a longer sequence would follow this one.
     """
 
-    def __init__(self, path: Path, size: tuple[int, int], fps: float = 30.0) -> None:
+    def __init__(self, path: Path, size: tuple[int, int], fps: float = 30.0, *, keep: bool = False) -> None:
         self._digits = check_sequence_name(path)
         check_writable(path)
-        self.path, self.size, self._fps = path, size, fps
+        self.path, self.size, self._fps, self._keep = path, size, check_rate("fps", fps), keep
         _check_none_there(path)
         self._last = -1.0
         self._next = 0
@@ -73,19 +74,25 @@ class SequenceWriter:
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        if isinstance(error, Exception):
+        if isinstance(error, Exception) and not self._keep:
             self.discard()
             return
         try:
             self.close()
         except OutputError:
-            self.discard()
+            if not self._keep:
+                self.discard()
             raise
 
     def _write_until(self, number: int) -> None:
         while self._held is not None and self._next < number:
             path = self.path.with_name(_NUMBER.sub(f"{self._next:0{self._digits}d}", self.path.name))
-            write_file(path, self._held[1])
+            try:
+                write_file(path, self._held[1])
+            except OutputError as error:
+                self._held = None
+                kept = f"; the {self._next} files before it are kept" if self._keep else ""
+                raise OutputError(f"{error}{kept}") from error
             self._written.append(path)
             self._next += 1
 

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+import struct
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from fractions import Fraction
+from os import SEEK_END
 from pathlib import Path
 from types import TracebackType
-from typing import TYPE_CHECKING, Any, Self
+from typing import TYPE_CHECKING, Any, BinaryIO, Self
 
-from agentface.conventions import Bytes, check_finite
+from agentface.conventions import Bytes, check_finite, check_rate
 from agentface.errors import InvalidValueError, OutputError
 from agentface.io.files import cannot_write, check_writable
 
@@ -19,31 +21,33 @@ if TYPE_CHECKING:
 
 _TICKS = 90_000
 _THREADS = 2  # a number of the machine's own would show in the file
+_FRAGMENT_US = 250_000
 _FORMATS = (".mp4", ".mov", ".m4v")
 
 
 class VideoWriter:
     """Writes frames as they come, each shown from its own time on.
 
-    The file is written in fragments of a second: cut off at any moment, it plays up to there. An error in the
-    ``with`` block, or a full disk, removes it; an interrupt (Ctrl-C) keeps it. The same frames at the same times give
-    the same bytes, with the same versions of the libraries.
+    The file is written in fragments of a quarter of a second: cut off at any moment, it plays up to there. An error in
+    the ``with`` block, or a full disk, removes it; an interrupt (Ctrl-C) keeps it. The same frames at the same times
+    give the same bytes, with the same versions of the libraries.
 
     Args:
         path: ends in .mp4, .mov or .m4v.
         size: width and height in pixels, both even: H.264 stores colour for two by two pixels.
         fps: the frame rate that is planned; the times given to ``add`` are what counts.
+        keep: an error, or a full disk, too, leaves what is filmed until then: for what cannot be filmed again.
 
-    Raises OutputError when the file cannot be written, InvalidValueError for a wrong size.
+    Raises OutputError when the file cannot be written, InvalidValueError for a wrong size or rate.
     """
 
-    def __init__(self, path: Path, size: tuple[int, int], fps: float = 30.0) -> None:
+    def __init__(self, path: Path, size: tuple[int, int], fps: float = 30.0, *, keep: bool = False) -> None:
         check_video_name(path)
         check_writable(path)
         if any(side < 2 or side % 2 for side in size):
             raise InvalidValueError("video size", "an even width and height", size)
-        self.path, self.size = path, size
-        self._step = max(1, round(_TICKS / fps))
+        self.path, self.size, self._keep = path, size, keep
+        self._step = max(1, round(_TICKS / check_rate("fps", fps)))
         self._last = -1
         self._open = True
         self._file = _File(path)
@@ -64,7 +68,7 @@ class VideoWriter:
         self._mux(frame)
 
     def close(self) -> None:
-        """Write what is left; may be called twice. Raises OutputError when that fails, and removes the file."""
+        """Write what is left; may be called twice. Raises OutputError when that fails, and removes the file or not."""
         if not self._open:
             return
         try:
@@ -79,13 +83,7 @@ class VideoWriter:
 
     def discard(self) -> None:
         """Close and remove the file."""
-        from av.error import FFmpegError
-
-        if self._open:
-            self._open = False
-            with suppress(FFmpegError, OSError):  # a file that goes away need not be whole
-                self._container.close()
-            self._file.close()
+        self._abandon()
         self.path.unlink(missing_ok=True)
 
     def __enter__(self) -> Self:
@@ -94,7 +92,7 @@ class VideoWriter:
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        if isinstance(error, Exception) or self._last < 0:
+        if self._last < 0 or (isinstance(error, Exception) and not self._keep):
             self.discard()
         else:
             self.close()
@@ -112,9 +110,26 @@ class VideoWriter:
         try:
             yield
         except (FFmpegError, OSError) as error:
-            raise OutputError(cannot_write(self.path, self._file.error or error)) from error
+            raise self._failed(self._file.error or error) from error
         if self._file.error is not None:
-            raise OutputError(cannot_write(self.path, self._file.error)) from self._file.error
+            raise self._failed(self._file.error) from self._file.error
+
+    def _failed(self, error: Exception) -> OutputError:
+        message = cannot_write(self.path, error)
+        if self._keep:
+            self._abandon()
+            until = keep_whole_fragments(self.path)
+            message += f"; it is kept up to {until:.1f} s" if until else "; nothing of it could be kept"
+        return OutputError(message)
+
+    def _abandon(self) -> None:
+        from av.error import FFmpegError
+
+        if self._open:
+            self._open = False
+            with suppress(FFmpegError, OSError):  # a file that goes away need not be whole
+                self._container.close()
+            self._file.close()
 
 
 class _File:
@@ -130,11 +145,13 @@ class _File:
 
     def write(self, content: bytes) -> int:
         rest = memoryview(content)
+        if self.error is not None:  # what follows a gap is worth nothing
+            raise self.error
         try:
             while rest:
                 rest = rest[self._file.write(rest) :]
         except OSError as error:
-            self.error = self.error or error
+            self.error = error
             raise
         return len(content)
 
@@ -147,12 +164,43 @@ def check_video_name(path: Path) -> None:
         )
 
 
+def keep_whole_fragments(path: Path) -> float:
+    """Cut a film behind its last whole fragment; its length in seconds. Without any, the file is removed: 0."""
+    import av
+
+    with path.open("r+b") as file:
+        file.truncate(whole_fragments(file))
+        empty = file.tell() == 0
+    if empty:
+        path.unlink()
+        return 0.0
+    with av.open(str(path)) as film:
+        stream = film.streams.video[0]
+        ends = [packet.pts + (packet.duration or 0) for packet in film.demux(stream) if packet.pts is not None]
+        return float(max(ends) * (stream.time_base or 0))
+
+
+def whole_fragments(file: BinaryIO) -> int:
+    """How many of its bytes are whole fragments (ISO/IEC 14496-12, 8.8); ``file`` is left standing behind them."""
+    size, place, whole = file.seek(0, SEEK_END), 0, 0
+    while place + 8 <= size:
+        file.seek(place)
+        length, kind = struct.unpack(">I4s", file.read(8))
+        if length < 8 or place + length > size:
+            break
+        place += length
+        if kind == b"mdat":
+            whole = place
+    return file.seek(whole)
+
+
 def _open(path: Path, file: _File, size: tuple[int, int], fps: float) -> tuple[OutputContainer, VideoStream]:
     import av
     from av.error import FFmpegError
     from av.video.stream import VideoStream
 
     movie = {"movflags": "frag_keyframe+empty_moov+default_base_moof", "flush_packets": "1"}
+    movie["frag_duration"] = str(_FRAGMENT_US)
     # Without frames that refer forward, the first one stands at 0 and none is lost when the writing is cut off.
     encoding = {"preset": "veryfast", "crf": "18", "bf": "0"}
     codec = "libx264" if "libx264" in av.codecs_available else "h264"

@@ -14,7 +14,7 @@ from agentface.head.look import Look, load_look
 from agentface.head.model import HeadModel
 from agentface.head.skin_image import skin_texture
 from agentface.view.camera import Camera, named_view
-from agentface.view.gl.context import Witness, make_current, open_context, shader_names
+from agentface.view.gl.context import Witness, finish, make_current, open_context, shader_names
 from agentface.view.gl.noise import SIDE, noise_volume
 from agentface.view.gl.programs import FRAME_BINDING, Programs
 from agentface.view.gl.quality import tier_named
@@ -120,6 +120,7 @@ class Renderer:
         make_current(self.context)
         targets = self._targets_for(size, quality)
         self.draw(geometry, targets, camera, quality, alpha=alpha)
+        finish(self.context)
         picture = targets.read(alpha=alpha)
         self._witness.check()
         return picture

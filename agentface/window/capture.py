@@ -3,27 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from contextlib import suppress
 from datetime import datetime
 from pathlib import Path
-from typing import Protocol
 
 from agentface.conventions import Bytes
 from agentface.errors import AgentFaceError
+from agentface.live.films import FilmWriter
 
 FILM_FPS = 30.0
-
-
-class Film(Protocol):
-    """What takes the frames of a film: ``agentface.io.video.VideoWriter``."""
-
-    def add(self, image: Bytes, time_s: float) -> None:
-        """Show ``image`` from ``time_s`` on."""
-
-    def close(self) -> None:
-        """Write what is left."""
-
-    def discard(self) -> None:
-        """Close and remove the file."""
 
 
 class Capture:
@@ -31,7 +19,8 @@ class Capture:
 
     Args:
         write_picture: writes ``(H, W, 3)`` uint8 to a path.
-        open_film: opens a film at a path, of a width and height, at so many frames a second.
+        open_film: opens a film at a path, of a width and height, at so many frames a second; one that fails keeps what
+            it has.
         say: tells where a file was written, or why it was not.
         folder: where the files go.
         now: the time that names a file.
@@ -40,14 +29,14 @@ class Capture:
     def __init__(
         self,
         write_picture: Callable[[Path, Bytes], None],
-        open_film: Callable[[Path, tuple[int, int], float], Film],
+        open_film: Callable[[Path, tuple[int, int], float], FilmWriter],
         say: Callable[[str], object] = print,
         folder: Path = Path(),
         now: Callable[[], datetime] = datetime.now,
     ) -> None:
         self._write_picture, self._open_film, self._say = write_picture, open_film, say
         self._folder, self._now = folder, now
-        self._film: Film | None = None
+        self._film: FilmWriter | None = None
         self._path, self._size = Path(), (0, 0)
         self._start = self._last = 0.0
         self.message = ""
@@ -66,13 +55,19 @@ class Capture:
         A film keeps the size it began with. A file that cannot be written is told, and does not end the show.
         """
         try:
-            self._take(time_s, size, draw)
+            self._take_picture(size, draw)
         except AgentFaceError as error:
             self._tell(str(error))
-            self.picture_wanted = self.film_wanted = False
+        self.picture_wanted = False
+        try:
+            self._take_film(time_s, size, draw)
+        except AgentFaceError as error:
+            self._tell(str(error))
+            self.film_wanted = False
             film, self._film = self._film, None
-            if film is not None:
-                film.discard()
+            with suppress(AgentFaceError):  # told already
+                if film is not None:
+                    film.close()
 
     def close(self) -> None:
         """End the film; the file is valid."""
@@ -84,16 +79,16 @@ class Capture:
             film.close()
         except AgentFaceError as error:
             self._tell(str(error))
-            film.discard()
         else:
             self._tell(f"filmed {self._last - self._start:.1f} s:", self._path)
 
-    def _take(self, time_s: float, size: tuple[int, int], draw: Callable[[tuple[int, int]], Bytes]) -> None:
+    def _take_picture(self, size: tuple[int, int], draw: Callable[[tuple[int, int]], Bytes]) -> None:
         if self.picture_wanted:
             path = self._fresh(".png")
             self._write_picture(path, draw(size))
-            self.picture_wanted = False
             self._tell("wrote", path)
+
+    def _take_film(self, time_s: float, size: tuple[int, int], draw: Callable[[tuple[int, int]], Bytes]) -> None:
         if self._film is not None and not self.film_wanted:
             self.close()
         if not self.film_wanted:

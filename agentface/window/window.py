@@ -2,17 +2,21 @@
 
 from __future__ import annotations
 
+import math
 import sys
-import time
-from collections.abc import Callable
+import threading
+from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from agentface.clock import Clock, SystemClock
 from agentface.conventions import Bytes
-from agentface.deform.geometry import FaceGeometry
 from agentface.errors import GraphicsError
 from agentface.head.look import Look
+from agentface.live.background import Background
+from agentface.live.loop import Frame, Source
+from agentface.view.gl.context import finish
 from agentface.view.gl.quality import QUALITIES, suited_quality
 from agentface.view.gl.targets import Targets
 from agentface.view.renderer import Renderer
@@ -51,7 +55,7 @@ class Window:
         size: width and height in points.
         capture: writes pictures and films; none are written when None.
         look: colours and lights; the face's own when None.
-        clock: seconds, for the steps between frames.
+        clock: the time; the machine's when None.
         say: prints the help, and what is amiss.
         quality: ``portrait`` where the driver has a GPU and else ``fast`` when None.
 
@@ -64,12 +68,12 @@ class Window:
         size: tuple[int, int] = (1200, 720),
         capture: Capture | None = None,
         look: Look | None = None,
-        clock: Callable[[], float] = time.perf_counter,
+        clock: Clock | None = None,
         say: Callable[[str], object] = print,
         quality: str | None = None,
     ) -> None:
         self._quality = quality
-        self.controls, self.clock, self.say = Controls(face, capture), clock, say
+        self.controls, self.clock, self.say = Controls(face, capture), clock or SystemClock(), say
         self.look, self.times = look, Times()
         self._no_panel = _missing_panel()
         self.glfw = _glfw()
@@ -81,9 +85,21 @@ class Window:
         self._targets: Targets | None = None
         self._shown: tuple[Any, ...] = ()
         self._awake_until = 0.0
+        self._held = threading.RLock()
+        """Kept by whoever uses the face: the loop steps it in another thread."""
 
-    def run(self, each_frame: Callable[[], object] | None = None) -> None:
-        """Show the face until the window is closed; ``each_frame`` is called before each frame."""
+    def run(
+        self,
+        sources: Sequence[Source] = (),
+        *,
+        duration: float = math.inf,
+        stopped: Callable[[], bool] = lambda: False,
+        each_frame: Callable[[], object] | None = None,
+    ) -> None:
+        """Show the face, which ``sources`` tell what to do, until the window is closed.
+
+        It also ends after ``duration`` seconds, and when ``stopped``; ``each_frame`` is called before each frame.
+        """
         glfw = self.glfw
         import moderngl
 
@@ -95,13 +111,19 @@ class Window:
             self.controls.quality = self._quality or suited_quality(context.info["GL_RENDERER"])
             self._open_panel()
             renderer = Renderer(self.controls.face.model, self.look, context)
-            before = self.clock()
-            while not (self.controls.closing or glfw.window_should_close(self.handle)):
-                if each_frame is not None:
-                    each_frame()
-                now = self.clock()
-                self._frame(renderer, screen, now, now - before)
-                before = now
+            with Background(
+                *(self.controls.face, self.clock, sources, self._held),
+                duration=duration,
+                longest_step_s=_LONGEST_STEP_S,
+            ) as loop:
+                before = self.clock.now()
+                while loop.running and not (self._closing() or stopped()):
+                    if each_frame is not None:
+                        with self._held:
+                            each_frame()
+                    start = self.clock.now()
+                    self._frame(renderer, screen, loop, start, start - before)
+                    before = start
         finally:
             if self.controls.capture is not None:
                 self.controls.capture.close()
@@ -110,39 +132,43 @@ class Window:
             glfw.destroy_window(self.handle)
             glfw.terminate()
 
-    def _frame(self, renderer: Renderer, screen: Any, start: float, since: float) -> None:
+    def _closing(self) -> bool:
+        return self.controls.closing or bool(self.glfw.window_should_close(self.handle))
+
+    def _frame(self, renderer: Renderer, screen: Any, loop: Background, start: float, since: float) -> None:
         glfw = self.glfw
-        geometry = self.controls.face.step(min(max(since, 0.0), _LONGEST_STEP_S))
-        deformed = self.clock()
-        pace = _IDLE_FRAME_S
-        if self._changes(geometry, start):
+        frame = loop.frame(_IDLE_FRAME_S)
+        stepped, pace = self.clock.now(), _IDLE_FRAME_S
+        if frame is not None and self._changes(frame, start):
             pace = _SHORTEST_FRAME_S
-            self._draw(renderer, screen, geometry, start)
-            renderer.context.finish()  # what is drawn now counts as this frame's, not as the next one's
-            self.times.note(deformed - start, self.clock() - deformed, since)
-            glfw.set_window_title(self.handle, self.controls.title())
+            self._draw(renderer, screen, frame, start)
+            finish(renderer.context)  # what is drawn now counts as this frame's, not as the next one's
+            self.times.note(frame.step_s, self.clock.now() - stepped, since)
+            with self._held:
+                title = self.controls.title()
+            glfw.set_window_title(self.handle, title)
             glfw.swap_buffers(self.handle)
-        left = pace - (self.clock() - start)
+        left = pace - (self.clock.now() - start)
         if left > 0.0:
             glfw.wait_events_timeout(left)
         else:
             glfw.poll_events()
 
-    def _changes(self, geometry: FaceGeometry, now: float) -> bool:
+    def _changes(self, frame: Frame, now: float) -> bool:
         """Whether this frame looks unlike the one that is shown: a still face costs no drawing."""
         controls, pixels = self.controls, self.glfw.get_framebuffer_size(self.handle)
         if min(pixels) < 1:  # minimised
             return False
-        shown = (pixels, controls.camera, controls.quality, controls.panelled, controls.helping, controls.face.pose)
+        shown = (pixels, controls.camera, controls.quality, controls.panelled, controls.helping, frame.pose)
         capture = controls.capture
         busy = capture is not None and (capture.picture_wanted or capture.film_wanted or capture.filmed_s is not None)
         typing = self._interface is not None and self._interface.typing
-        if self._shown[:-1] == shown and np.array_equal(self._shown[-1], geometry.vertices):
+        if self._shown[:-1] == shown and np.array_equal(self._shown[-1], frame.geometry.vertices):
             return busy or typing or now < self._awake_until
-        self._shown = (*shown, geometry.vertices.copy())
+        self._shown = (*shown, frame.geometry.vertices)
         return True
 
-    def _draw(self, renderer: Renderer, screen: Any, geometry: FaceGeometry, now: float) -> None:
+    def _draw(self, renderer: Renderer, screen: Any, frame: Frame, now: float) -> None:
         points = self.glfw.get_window_size(self.handle)
         pixels = self.glfw.get_framebuffer_size(self.handle)
         # the framebuffer counts pixels, which high-density displays have more of than points
@@ -155,19 +181,20 @@ class Window:
                 self._targets.release()
             self._targets = Targets.make(renderer.context, size, samples)
         screen.viewport = (0, 0, *size)
-        renderer.draw(geometry, self._targets, self.controls.camera, quality, onto=screen)
+        renderer.draw(frame.geometry, self._targets, self.controls.camera, quality, onto=screen)
         if self.controls.capture is not None:
 
             def picture(wanted: tuple[int, int]) -> Bytes:
                 if wanted[0] <= size[0] < wanted[0] + 2 and wanted[1] <= size[1] < wanted[1] + 2:
                     return _read(screen, wanted)
-                return renderer.render(geometry, wanted, self.controls.camera, quality)
+                return renderer.render(frame.geometry, wanted, self.controls.camera, quality)
 
             self.controls.capture.frame(now, size, picture)
         if self._panel is not None:
             screen.viewport = (0, 0, *pixels)
             screen.use()
-            self._panel.draw(points)
+            with self._held:
+                self._panel.draw(points)
 
     def _panel_width(self) -> float:
         return 0.0 if self._panel is None else self._panel.width(self.glfw.get_window_size(self.handle)[0])
@@ -219,9 +246,10 @@ class Window:
 
     def _woken(self, told: Callable[..., object] | None) -> Callable[..., None]:
         def call(*event: Any) -> None:
-            self._awake_until = self.clock() + _AWAKE_S
+            self._awake_until = self.clock.now() + _AWAKE_S
             if told is not None:
-                told(*event)
+                with self._held:
+                    told(*event)
 
         return call
 

@@ -8,12 +8,12 @@ import pytest
 from osc_bytes import bundle, message
 
 from agentface import EmotionState, Face
-from agentface.clock import ManualClock
 from agentface.errors import InvalidValueError, UnknownNameError
 from agentface.io.osc.codec import decode
 from agentface.io.osc.receiver import ANSWERS_A_SECOND, ANSWERS_AT_ONCE, Receiver
 from agentface.io.osc.schedule import FURTHEST_S, MOST
 from agentface.requests import SetMuscle
+from tests.clocks import ManualClock
 from tests.heads import head_model
 
 ME = ("127.0.0.1", 1)

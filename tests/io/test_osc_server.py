@@ -41,11 +41,16 @@ def client(server):
         yield client
 
 
-def hear(face, client, seconds=10.0):
+def step(server):
+    server.take_in()
+    server._face.step(0.01)
+
+
+def hear(server, client, seconds=10.0):
     """The next answer, while the face is stepped."""
     end = time.monotonic() + seconds
     while time.monotonic() < end:
-        face.step(0.01)
+        step(server)
         try:
             return decode(client.recv(65536))[0]
         except TimeoutError:
@@ -53,31 +58,31 @@ def hear(face, client, seconds=10.0):
     raise AssertionError("no answer")
 
 
-def wait_for(condition, face, seconds=10.0):
+def wait_for(condition, server, seconds=10.0):
     end = time.monotonic() + seconds
     while not condition():
         assert time.monotonic() < end
-        face.step(0.01)
+        step(server)
 
 
-def test_a_message_over_a_socket_and_the_status(face, client):
+def test_a_message_over_a_socket_and_the_status(server, client):
     client.send(message("/agentface/emotion", "sff", "joy", 0.5, 0))
     client.send(message("/agentface/status"))
-    status = json.loads(hear(face, client).arguments[0])
+    status = json.loads(hear(server, client).arguments[0])
     assert status["emotion"]["happiness"] == status["shown"]["emotion"]["happiness"] == 0.5
 
 
-def test_errors_come_back_to_the_sender(face, client):
+def test_errors_come_back_to_the_sender(face, server, client):
     client.send(message("/agentface/emotion", "sf", "joi", 0.5))
-    answer = hear(face, client)
+    answer = hear(server, client)
     assert answer.address == "/agentface/error"
     assert answer.arguments[0] == "/agentface/emotion"
     client.send(b"/agentface/emotion\0\0,sf")
-    assert hear(face, client).arguments[0] == "/agentface/emotion"
+    assert hear(server, client).arguments[0] == "/agentface/emotion"
     client.send(b"\xff" * 60_000)
-    assert "more than" in hear(face, client).arguments[1]
+    assert "more than" in hear(server, client).arguments[1]
     client.send(b"")
-    assert hear(face, client).arguments[0] == ""
+    assert hear(server, client).arguments[0] == ""
     assert face.message_counts.errors == {"malformed": 3, "unknown": 0, "rejected": 1}
 
 
@@ -85,13 +90,13 @@ def test_a_flood_leaves_the_newest_state_and_no_queue(face, server, client):
     for number in range(20_000):
         client.send(message("/agentface/emotion", "sf", "joy", number / 20_000))
         if number % 500 == 0:
-            face.step(0.001)
+            step(server)
             assert len(server._waiting) <= MOST_WAITING
     # The system drops what comes faster than it is read; the sender's last word comes when the flood is over.
-    wait_for(lambda: not server._waiting, face)
+    wait_for(lambda: not server._waiting, server)
     client.send(message("/agentface/emotion", "sf", "joy", 0.25))
-    wait_for(lambda: face.emotion == EmotionState.of(happiness=0.25), face)
-    face.step(0.01)
+    wait_for(lambda: face.emotion == EmotionState.of(happiness=0.25), server)
+    step(server)
     assert not server._waiting
     assert face.message_counts.errors == {"malformed": 0, "unknown": 0, "rejected": 0}
 
@@ -103,7 +108,7 @@ def test_without_steps_the_oldest_are_dropped(face, server, client):
             time.sleep(0.001)
     time.sleep(0.2)
     assert len(server._waiting) == MOST_WAITING
-    face.step(0.01)
+    step(server)
     assert face.emotion["happiness"] > 0.9
     assert face.message_counts.messages == MOST_WAITING
 
@@ -112,9 +117,9 @@ def test_a_sender_that_is_gone_does_not_stop_the_server(face, server, client):
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as gone:
         gone.connect((server.host, server.port))
         gone.send(message("/agentface/status"))
-    wait_for(lambda: face.message_counts.messages == 1, face)
+    wait_for(lambda: face.message_counts.messages == 1, server)
     client.send(message("/agentface/status"))
-    assert hear(face, client).address == "/agentface/status"
+    assert hear(server, client).address == "/agentface/status"
 
 
 def test_a_taken_port_is_one_clear_error(face, server):
@@ -122,7 +127,6 @@ def test_a_taken_port_is_one_clear_error(face, server):
         OscServer(face, port=server.port)
     with pytest.raises(ServerError, match="no such host"):
         OscServer(face, "no such host.invalid")
-    assert len(face.inputs) == 1
 
 
 @pytest.mark.parametrize("host", ["127.0.0.1", "localhost", "LOCALHOST"])
@@ -133,9 +137,9 @@ def test_whatever_localhost_means_it_is_heard_and_answered(face, host, there):
         client.connect((place, server.port))
         client.settimeout(0.05)
         client.send(message("/agentface/emotion", "sf", "joy", 0.5))
-        wait_for(lambda: face.emotion["happiness"] == 0.5, face)
+        wait_for(lambda: face.emotion["happiness"] == 0.5, server)
         client.send(message("/agentface/status"))
-        assert hear(face, client).address == "/agentface/status"
+        assert hear(server, client).address == "/agentface/status"
 
 
 def test_the_loopback_is_all_that_it_listens_on(server):
@@ -168,7 +172,6 @@ def test_a_port_taken_under_the_other_address_is_told_or_passed_over(face):
         port = taken.getsockname()[1]
         with pytest.raises(ServerError, match=f"port {port} of ::1"):
             OscServer(face, port=port)
-    assert not face.inputs
 
 
 def test_what_the_system_refuses_is_blamed_on_nobody_else():
@@ -186,7 +189,6 @@ def test_closing_frees_the_port_and_the_thread(face):
     server.close()
     server.close()
     assert threading.active_count() == threads
-    assert not face.inputs
     OscServer(face, port=server.port).close()
 
 

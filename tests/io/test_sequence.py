@@ -12,6 +12,7 @@ import pytest
 from PIL import Image
 
 from agentface.errors import InvalidValueError, OutputError
+from agentface.io.files import write_file
 from agentface.io.sequence import SequenceWriter
 
 SIZE = (6, 4)
@@ -33,8 +34,8 @@ def film(path: Path, times: list[float], fps: float = 10) -> None:
             frames.add(picture(10 * number + 10), at)
 
 
-def film_until(path: Path, error: BaseException) -> None:
-    with SequenceWriter(path, SIZE, 10) as frames:
+def film_until(path: Path, error: BaseException, *, keep: bool = False) -> None:
+    with SequenceWriter(path, SIZE, 10, keep=keep) as frames:
         for number in range(3):
             frames.add(picture(number), number / 10)
         raise error
@@ -89,6 +90,22 @@ def test_an_interrupt_keeps_what_was_filmed(tmp_path):
     assert len(read(tmp_path)) == 3
 
 
+def test_a_live_recording_keeps_its_files_when_something_fails(tmp_path, monkeypatch):
+    with pytest.raises(RuntimeError):
+        film_until(tmp_path / "a-%05d.png", RuntimeError(), keep=True)
+    assert len(read(tmp_path)) == 3
+
+    def full(path, content):
+        if path.name == "b-00002.png":
+            raise OutputError(f"{path}: no space")
+        write_file(path, content)
+
+    monkeypatch.setattr("agentface.io.sequence.write_file", full)
+    with pytest.raises(OutputError, match=r"no space; the 2 files before it are kept"):
+        film_until(tmp_path / "b-%05d.png", KeyboardInterrupt(), keep=True)
+    assert [path.name for path in sorted(tmp_path.glob("b*"))] == ["b-00000.png", "b-00001.png"]
+
+
 def test_a_killed_process_leaves_whole_files(tmp_path):
     script = (
         "import numpy as np, sys; from pathlib import Path; from agentface.io.sequence import SequenceWriter\n"
@@ -124,7 +141,9 @@ def test_places_that_cannot_be_written(tmp_path):
         SequenceWriter(tmp_path / "no" / "a-%05d.png", SIZE)
 
 
-def test_bad_frames(tmp_path):
+def test_bad_frames_and_rates(tmp_path):
+    with pytest.raises(InvalidValueError, match="fps"):
+        SequenceWriter(tmp_path / "a-%05d.png", SIZE, 0)
     with SequenceWriter(tmp_path / "a-%05d.png", SIZE) as frames:
         frames.add(picture(1), 0.5)
         for at in (0.5, 0.4, -1.0, float("nan")):

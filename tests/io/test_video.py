@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from agentface.errors import InvalidValueError, OutputError
-from agentface.io.video import VideoWriter
+from agentface.io.video import VideoWriter, whole_fragments
 
 SIZE = (64, 48)
 
@@ -34,8 +34,8 @@ def read(path: Path) -> list[tuple[float, float]]:
         ]
 
 
-def film_until(path: Path, error: BaseException) -> None:
-    with VideoWriter(path, SIZE) as video:
+def film_until(path: Path, error: BaseException, *, keep: bool = False) -> None:
+    with VideoWriter(path, SIZE, keep=keep) as video:
         video.add(picture(1), 0.0)
         raise error
 
@@ -177,13 +177,45 @@ def test_a_full_disk_is_told_and_nothing_is_left(tmp_path):
         assert not path.exists()
 
 
+def test_a_full_disk_keeps_the_whole_part_of_a_live_recording_and_says_up_to_where(tmp_path):
+    whole = tmp_path / "whole.mp4"
+    subprocess.run([sys.executable, "-c", NOISE, str(whole), "99"], check=True, timeout=60)
+    everything = read(whole)
+    limited = "import resource, sys; resource.setrlimit(resource.RLIMIT_FSIZE, (int(sys.argv[3]),) * 2)\n"
+    limited += NOISE.replace(f"{SIZE})", f"{SIZE}, keep=True)")
+    for limit in (whole.stat().st_size // 2, whole.stat().st_size - 1):
+        path = tmp_path / f"{limit}.mp4"
+        command = [sys.executable, "-c", limited, str(path), "99", str(limit)]
+        done = subprocess.run(command, check=False, capture_output=True, text=True, timeout=60)
+        until = float(re.search(r"File too large; .*; it is kept up to (\d+\.\d) s", done.stderr)[1])
+        kept = read(path)
+        assert kept == everything[: len(kept)]
+        assert kept[-1][0] + 1 / 30 == pytest.approx(until, abs=0.051)
+        assert until > limit / whole.stat().st_size * everything[-1][0] - 1.0, "most of what was written"
+        with path.open("rb") as file:
+            assert whole_fragments(file) == path.stat().st_size
+    command = [sys.executable, "-c", limited, str(tmp_path / "b.mp4"), "99", "900"]
+    done = subprocess.run(command, check=False, capture_output=True, text=True, timeout=60)
+    assert "nothing of it could be kept" in done.stderr
+    assert not (tmp_path / "b.mp4").exists()
+
+
+def test_an_error_keeps_a_live_recording(tmp_path):
+    with pytest.raises(RuntimeError):
+        film_until(tmp_path / "a.mp4", RuntimeError(), keep=True)
+    assert len(read(tmp_path / "a.mp4")) == 1
+
+
 def test_no_frames_no_file(tmp_path):
     with VideoWriter(tmp_path / "a.mp4", SIZE):
         pass
     assert not (tmp_path / "a.mp4").exists()
 
 
-def test_bad_frames_and_sizes(tmp_path):
+def test_bad_frames_sizes_and_rates(tmp_path):
+    for fps in (0, -1, float("nan"), 1e6):
+        with pytest.raises(InvalidValueError, match="fps"):
+            VideoWriter(tmp_path / "a.mp4", SIZE, fps)
     with pytest.raises(InvalidValueError, match="even"):
         VideoWriter(tmp_path / "a.mp4", (63, 48))
     with VideoWriter(tmp_path / "a.mp4", SIZE) as video:

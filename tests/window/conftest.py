@@ -47,7 +47,7 @@ def at(label, part=0.5):
 
 def frames(count=2):
     for _ in range(count):
-        window._awake_until = window.clock() + 1.0  # so that every frame is drawn
+        window._awake_until = window.clock.now() + 1.0  # so that every frame is drawn
         yield
 
 def until(condition, most=200):
@@ -107,7 +107,7 @@ def show(**options):
         except StopIteration:
             window.controls.closing = True
 
-    window.run(next_scene)
+    window.run(each_frame=next_scene)
     print("SEEN" + json.dumps(seen))
 """
 

@@ -83,32 +83,49 @@ def test_a_folder_that_is_gone_is_told_and_the_show_goes_on(tmp_path, said):
     capture.picture_wanted = capture.film_wanted = True
     capture.frame(0.0, (40, 30), grey)
     assert "no folder" in capture.message
-    assert len(said) == 1
+    assert [message.partition(":")[2].startswith(" expected a file") for message in said] == [True, True]
     assert not capture.picture_wanted
     assert not capture.film_wanted
     capture.frame(0.1, (40, 30), never)
 
 
-def test_a_full_disk_ends_the_film_and_removes_it(tmp_path, said):
-    class Full:
-        discarded = 0
+class Full:
+    """A film that fails with its third frame."""
 
-        def __init__(self, path, size, fps):
-            self.frames = 0
+    def __init__(self, path, size, fps):
+        self.frames, self.closed = 0, 0
+        Full.last = self
 
-        def add(self, image, time_s):
-            self.frames += 1
-            if self.frames == 3:
-                raise OutputError(f"film: cannot be written: {errno.errorcode[errno.ENOSPC]}")
+    def add(self, image, time_s):
+        self.frames += 1
+        if self.frames == 3:
+            raise OutputError(f"film: cannot be written: {errno.errorcode[errno.ENOSPC]}")
 
-        def discard(self):
-            Full.discarded += 1
+    def close(self):
+        self.closed += 1
 
+
+def test_a_full_disk_ends_the_film_and_not_the_show(tmp_path, said):
     capture = Capture(write_picture, Full, said.append, tmp_path, lambda: NOON)
     capture.film_wanted = True
     for frame in range(3):
         capture.frame(float(frame), (40, 30), grey)
     assert "ENOSPC" in said[-1]
-    assert Full.discarded == 1
+    assert Full.last.closed == 1, "it keeps what it has"
     assert capture.filmed_s is None
     capture.frame(4.0, (40, 30), never)
+
+
+def test_a_picture_that_cannot_be_written_does_not_end_the_film(tmp_path, said):
+    def fails(path, image):
+        raise OutputError(f"{path}: the disk is full")
+
+    capture = Capture(fails, VideoWriter, said.append, tmp_path, lambda: NOON)
+    capture.film_wanted = True
+    for frame in range(6):
+        capture.picture_wanted = frame == 3
+        capture.frame(frame / 10, (40, 30), grey)
+    assert capture.filmed_s == pytest.approx(0.5)
+    capture.close()
+    assert sum("the disk is full" in message for message in said) == 1
+    assert len(list(tmp_path.glob("*.mp4"))) == 1

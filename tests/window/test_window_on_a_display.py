@@ -19,8 +19,8 @@ from agentface.window.window import Window
 said, frames = [], []
 window = Window(Face(compiled=False), size=(240, 180), say=said.append)
 
-def drawn(renderer, screen, geometry, now, draw=window._draw):
-    draw(renderer, screen, geometry, now)
+def drawn(renderer, screen, frame, now, draw=window._draw):
+    draw(renderer, screen, frame, now)
     frames.append(np.frombuffer(screen.read(components=3), np.uint8))
     window.controls.key("6")
     window.controls.closing = len(frames) == 3

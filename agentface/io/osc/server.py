@@ -30,8 +30,8 @@ _SOCKET_BUFFER = 4 * 1024 * 1024
 class OscServer:
     """Receives OSC for a face from its making until ``close``; as a context manager, until the block ends.
 
-    A thread for each socket does nothing but empty it; everything else happens in ``Face.step``, in the thread that
-    calls it.
+    A source for :func:`agentface.live.loop.run`; a program with a loop of its own calls ``take_in`` before each
+    ``face.step``. A thread for each socket does nothing but empty it; everything else happens in the loop's thread.
 
     Args:
         face: what the messages are for.
@@ -60,10 +60,9 @@ class OscServer:
         ]
         for thread in self._threads:
             thread.start()
-        face.inputs.append(self.take_in)
 
-    def take_in(self) -> None:
-        """Apply everything that came since the last call; ``Face.step`` does this."""
+    def take_in(self, time_s: float = 0.0) -> None:
+        """Apply everything that came since the last call, whatever the time of the loop is."""
         waiting = [self._waiting.popleft() for _ in range(len(self._waiting))]
         self._receiver.take(waiting)
 
@@ -72,7 +71,6 @@ class OscServer:
         if self._closed.is_set():
             return
         self._closed.set()
-        self._face.inputs.remove(self.take_in)
         for thread, listener in zip(self._threads, self._sockets, strict=True):
             thread.join()
             listener.close()

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import ctypes
 import re
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 from typing import Any, NoReturn
 
@@ -44,6 +46,24 @@ def open_context() -> Any:
 def make_current(context: Any) -> None:
     """Let OpenGL draw in ``context`` from now on, also when another face's has become the current one since."""
     context.__enter__()  # its __exit__ would leave no context current, not the one before
+
+
+@cache
+def _finish() -> Callable[[], object] | None:
+    try:
+        finish: Callable[[], object] = ctypes.CDLL("libGL.so.1").glFinish
+    except (OSError, AttributeError):
+        return None
+    return finish
+
+
+def finish(context: Any) -> None:
+    """Wait until everything is drawn in ``context``, the current one; other threads of Python run meanwhile.
+
+    moderngl's own calls keep them waiting.
+    """
+    wait = _finish()
+    (wait or context.finish)()
 
 
 class Witness:
