@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import sys
 from importlib import import_module
+from typing import Any
 
 import click
 
+from agentface.commands.streams import output_told, watch_output
 from agentface.errors import AgentFaceError, DataError
 
 COMMANDS = ("render", "sheet", "serve", "show", "play", "explain", "check", "unwrap", "bench", "calibrate", "figures")
@@ -24,9 +26,14 @@ class _Commands(click.Group):
         command: click.Command = getattr(import_module(f"agentface.commands.{cmd_name}"), cmd_name)
         return command
 
+    def make_context(self, *args: Any, **extra: Any) -> click.Context:
+        with output_told():  # --help and --version are printed here
+            return super().make_context(*args, **extra)
+
     def invoke(self, ctx: click.Context) -> object:
         try:
-            return super().invoke(ctx)
+            with output_told():
+                return super().invoke(ctx)
         except AgentFaceError as error:
             # Faults begin with file:line, which editors follow.
             click.echo(str(error) if isinstance(error, DataError) else f"agentface: {error}", err=True)
@@ -41,4 +48,5 @@ def cli() -> None:
 
 def main() -> None:
     """Run the command line."""
+    watch_output()
     sys.exit(cli(prog_name="agentface"))

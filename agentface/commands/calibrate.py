@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from agentface.commands.options import deformer_option, json_option, write_json
+from agentface.commands.streams import console
 from agentface.errors import OutputError
 
 if TYPE_CHECKING:
@@ -128,7 +129,6 @@ def _fit(face: str, starts: int, seed: int, dry_run: bool, json_file: str | None
 @contextmanager
 def _progress(starts: int) -> Iterator[Progress]:
     """Shows each search as it ends, and the time left."""
-    from rich.console import Console
     from rich.progress import BarColumn, TextColumn, TimeElapsedColumn, TimeRemainingColumn
     from rich.progress import Progress as Bar
 
@@ -140,7 +140,7 @@ def _progress(starts: int) -> Iterator[Progress]:
     steps = iter([each for each in work for _ in range(starts)])
     columns = (TextColumn("{task.description}"), BarColumn(), TimeElapsedColumn(), TextColumn("left"))
     # No update comes for a minute at times: guess from all of them.
-    with Bar(*columns, TimeRemainingColumn(), console=Console(stderr=True), speed_estimate_period=3600) as bar:
+    with Bar(*columns, TimeRemainingColumn(), console=console(), speed_estimate_period=3600) as bar:
         task = bar.add_task("fitting", total=starts * sum(work))
         yield lambda message: bar.update(task, description=message, advance=next(steps, 0))
 
@@ -160,7 +160,10 @@ def _print(names: dict[int, str], before: Rows, after: Rows) -> None:
     for title, fitted in (("vector muscles", True), ("lids, lips, jaw", False)):
         means = [f"{mean_cosine(rows, fitted=fitted):.2f}" for rows in (before, after)]
         table.add_row("all", f"mean of {title}", " → ".join(means), "", "")
-    Console().print(table)
+    terminal = Console()
+    with terminal.capture() as printed:
+        terminal.print(table)
+    click.echo(printed.get(), nl=False)
 
 
 def _figures(rows: Rows) -> dict[str, Any]:

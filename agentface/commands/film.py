@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
+
+from agentface.commands.streams import console
 
 if TYPE_CHECKING:
     from agentface.conventions import Bytes
@@ -73,31 +74,14 @@ class Shot:
         return VideoWriter(self.path, self.size, self.fps, keep=self.live)
 
 
-class _Terminal:
-    """The standard error, which may go away with its terminal: what cannot be said is no reason to stop."""
-
-    def write(self, text: str) -> int:
-        with suppress(OSError, ValueError):
-            sys.stderr.write(text)
-        return len(text)
-
-    def flush(self) -> None:
-        with suppress(OSError, ValueError):
-            sys.stderr.flush()
-
-    def __getattr__(self, name: str) -> Any:
-        return getattr(sys.stderr, name)
-
-
 @contextmanager
 def _progress(name: str, total_s: float | None) -> Iterator[Callable[[float], None]]:
-    from rich.console import Console
     from rich.progress import Progress
 
-    console = Console(file=_Terminal())  # type: ignore[arg-type]  # all of a file that is written to
-    if total_s is None or not console.is_terminal:
+    terminal = console()
+    if total_s is None or not terminal.is_terminal:
         yield lambda _: None
         return
-    with Progress(console=console) as progress:  # rich's own columns end with the time left
+    with Progress(console=terminal) as progress:  # rich's own columns end with the time left
         task = progress.add_task(name, total=total_s)
         yield lambda time_s: progress.update(task, completed=time_s)

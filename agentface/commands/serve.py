@@ -20,6 +20,7 @@ from agentface.commands.options import (
     make_face,
     size_option,
 )
+from agentface.commands.streams import say
 
 if TYPE_CHECKING:
     from agentface.face import Face
@@ -105,7 +106,7 @@ def _check_options(names: set[str], *, window: bool, record: bool) -> None:
 
 
 def _announce(face: Face, server: OscServer) -> None:
-    click.echo(f"{face.model.name} listens to OSC on {server.host}:{server.port}")
+    say(f"{face.model.name} listens to OSC on {server.host}:{server.port}")
 
 
 def _in_a_window(

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from contextlib import suppress
 from functools import partial
 from typing import TYPE_CHECKING
 
@@ -11,6 +10,7 @@ import click
 
 from agentface.commands.ending import until_told
 from agentface.commands.options import face_options, live_quality_option, look_option, make_face
+from agentface.commands.streams import say
 
 if TYPE_CHECKING:
     from agentface.face import Face
@@ -31,7 +31,7 @@ def show(*, quality: str | None, look: str | None, face: str, deformer: str) -> 
 
 def make_window(
     face: Face,
-    say: Callable[[str], object] | None = None,
+    say: Callable[[str], object] = say,
     look: str | None = None,
     quality: str | None = None,
     camera: str = "front",
@@ -43,13 +43,7 @@ def make_window(
     from agentface.window.capture import Capture
     from agentface.window.window import Window
 
-    say = say or _say
     capture = Capture(write_picture, partial(VideoWriter, keep=True), say)
     window = Window(face, capture=capture, look=load_look(face.model, look), say=say, quality=quality)
     window.controls.look(camera)
     return window
-
-
-def _say(message: str) -> None:
-    with suppress(OSError):  # the panel says it, too, and a terminal that is closed is no reason to close the window
-        click.echo(message)
