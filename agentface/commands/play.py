@@ -19,6 +19,7 @@ from agentface.commands.options import (
     make_face,
     size_option,
 )
+from agentface.commands.streams import note
 from agentface.errors import DataError, Fault, GraphicsError
 
 if TYPE_CHECKING:
@@ -123,5 +124,5 @@ def _film(face: Face, score: Score, shot: Shot, ending: Ending) -> None:
         drawn = run(face, FrameClock(fps), [player], [film], fps=fps, duration=end, stopped=ending.told)
     if drawn < frames:
         filmed_s = max(drawn - 1, 0) / fps
-        click.echo(f"{shot.path}: stopped at {filmed_s:.1f} s of {score.length_s:.1f} s", err=True)
+        note(f"{shot.path}: stopped at {filmed_s:.1f} s of {score.length_s:.1f} s")
         raise SystemExit(ending.code)

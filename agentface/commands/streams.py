@@ -53,6 +53,12 @@ def say(message: str) -> None:
         _tell(error)
 
 
+def note(message: str) -> None:
+    """Print to the standard error, if there is still one."""
+    with suppress(OSError):
+        click.echo(message, err=True)
+
+
 def console() -> Console:
     """For progress, on the standard error; a terminal that goes away stops nothing."""
     from rich.console import Console
@@ -62,8 +68,7 @@ def console() -> Console:
 
 def _tell(error: OSError) -> None:
     reason = f"expected to write it, got: {error.strerror}; give it a file or a program that takes all of it"
-    with suppress(OSError):
-        click.echo(f"agentface: standard output: {reason}", err=True)
+    note(f"agentface: standard output: {reason}")
 
 
 class _Output(io.FileIO):
