@@ -22,6 +22,7 @@ from agentface.view.gl.targets import Targets
 from agentface.view.renderer import Renderer
 from agentface.window.capture import Capture
 from agentface.window.controls import Controls
+from agentface.window.display import display_watched
 from agentface.window.menu import help_text
 from agentface.window.times import Times
 
@@ -111,11 +112,14 @@ class Window:
             self.controls.quality = self._quality or suited_quality(context.info["GL_RENDERER"])
             self._open_panel()
             renderer = Renderer(self.controls.face.model, self.look, context)
-            with Background(
-                *(self.controls.face, self.clock, sources, self._held),
-                duration=duration,
-                longest_step_s=_LONGEST_STEP_S,
-            ) as loop:
+            with (
+                display_watched(self._display_lost),
+                Background(
+                    *(self.controls.face, self.clock, sources, self._held),
+                    duration=duration,
+                    longest_step_s=_LONGEST_STEP_S,
+                ) as loop,
+            ):
                 before = self.clock.now()
                 while loop.running and not (self._closing() or stopped()):
                     if each_frame is not None:
@@ -131,6 +135,11 @@ class Window:
                 self._interface.close()
             glfw.destroy_window(self.handle)
             glfw.terminate()
+
+    def _display_lost(self) -> None:
+        if self.controls.capture is not None:
+            self.controls.capture.close()
+        self.say("the window's display is gone")
 
     def _closing(self) -> bool:
         return self.controls.closing or bool(self.glfw.window_should_close(self.handle))

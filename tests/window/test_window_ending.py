@@ -1,0 +1,51 @@
+"""However a window ends, the film that it was making is valid."""
+
+from __future__ import annotations
+
+import os
+import re
+import shutil
+import subprocess
+import sys
+
+import pytest
+
+pytestmark = [pytest.mark.gl, pytest.mark.slow]
+
+FILMING = """
+"$0" -m agentface $COMMAND &
+face=$!
+until window=$(xdotool search --name "for help"); do sleep 0.1; done
+until ls *.mp4 2>/dev/null; do xdotool windowfocus $window key r; sleep 0.5; done
+sleep 1
+$END
+wait $face
+echo code $?
+"""
+
+
+@pytest.mark.skipif(not shutil.which("xvfb-run") or not shutil.which("xdotool"), reason="Debian: xvfb, xauth, xdotool")
+@pytest.mark.parametrize(
+    ("command", "end", "code"),
+    [
+        ("show", "kill -HUP $face", 0),
+        ("serve --osc 127.0.0.1:0 --view window", "kill -INT $face; kill -INT $face", 0),
+        ("show", "xdotool windowkill $window", 1),  # as when the display goes away
+        ("show", "xdotool key --window $window Escape", 0),
+    ],
+    ids=["hangup", "interrupted-twice", "display", "escape"],
+)
+def test_the_film_of_a_window_that_ends(tmp_path, command, end, code):
+    import av
+
+    pytest.importorskip("glfw")
+    script = FILMING.replace("$COMMAND", command).replace("$END", end)
+    done = subprocess.run(
+        ["xvfb-run", "--auto-servernum", "sh", "-c", script, sys.executable],
+        check=False, capture_output=True, text=True, timeout=120, cwd=tmp_path, env=os.environ | {"DISPLAY": ""},
+    )  # fmt: skip
+    assert f"code {code}" in done.stdout, done.stdout + done.stderr
+    (path,) = tmp_path.glob("*.mp4")
+    assert re.search(rf"filmed \d\.\d s: {path}", done.stdout)
+    with av.open(str(path)) as film:
+        assert max(float(frame.time) for frame in film.decode(video=0)) > 0.4
