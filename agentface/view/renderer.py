@@ -180,6 +180,7 @@ class Renderer:
             self._head_hair.draw_soft(quality, targets.scene)
         context.enable_only(moderngl.NOTHING)
         if targets.samples:
+            finish(context)
             context.copy_framebuffer(targets.picture, targets.scene)
         if onto is not None:
             onto.use()

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from osc_bytes import message
 
 from agentface import Face
 from agentface.clock import FrameClock
@@ -13,6 +12,7 @@ from agentface.live.loop import run
 from agentface.live.notes import Recorder, Replay
 from tests.clocks import ManualClock
 from tests.heads import head_model
+from tests.io.osc_bytes import message
 
 FPS = 16  # of which a clock counts the seconds exactly
 STORY = {
