@@ -10,6 +10,7 @@ import socket
 import subprocess
 import sys
 import threading
+import time
 from types import SimpleNamespace
 
 import numpy as np
@@ -115,6 +116,30 @@ def test_it_films_and_shows_a_look(tmp_path, monkeypatch):
     assert call(*words, "ginger", "--view", "window").exit_code == 0
     assert call(*words, "ginger", "--view", "window", "--quality", "portrait", "--camera", "profile").exit_code == 0
     assert shown == [("ginger", None, "front"), (1, False), ("ginger", "portrait", "profile"), (1, False)]
+
+
+@pytest.mark.gl
+def test_frames_that_are_left_out_are_counted_and_told(tmp_path, monkeypatch):
+    import av
+
+    from agentface.live.films import FilmSink
+
+    path, show = tmp_path / "film.mp4", FilmSink.show
+
+    def slowly(sink, frame):
+        time.sleep(0.25)
+        show(sink, frame)
+
+    monkeypatch.setattr(FilmSink, "show", slowly)
+    words = ("--osc", "127.0.0.1:0", "--record", path, "--duration", "1", "--fps", "20", "--size", "96x64")
+    result = call(*words)
+    assert result.exit_code == 0, result.output
+    told = re.search(rf"{path}: (\d+) of (\d+) frames are left out, .*--every-frame", result.stderr)
+    dropped, frames = map(int, told.groups())
+    with av.open(str(path)) as film:
+        assert sum(1 for _ in film.decode(video=0)) == frames - dropped
+    assert 2 <= frames - dropped <= 6
+    assert frames >= 10, "the face was stepped all the same"
 
 
 @pytest.mark.gl

@@ -47,7 +47,7 @@ class Background:
     ) -> None:
         self._face, self._clock, self._sources, self._held = face, clock, sources, held
         self._duration, self._longest_step_s = duration, longest_step_s
-        self._mail = Mailbox()
+        self._mail, self._passed_over = Mailbox(), 0
         self._asked, self._stop = threading.Event(), threading.Event()
         self._error: BaseException | None = None
         self._thread = threading.Thread(target=self._work, name="agentface-loop", daemon=True)
@@ -59,16 +59,17 @@ class Background:
 
     @property
     def dropped(self) -> int:
-        """The number of frames that nobody took."""
-        return self._mail.dropped
+        """The number of frames that were never given out."""
+        return self._mail.dropped + self._passed_over
 
     def frame(self, timeout_s: float) -> Frame | None:
         """A frame made now, or, where that takes more than ``timeout_s``, the newest one, or None."""
         earlier = self._mail.take(0.0)
         self._asked.set()
-        frame = self._mail.take(timeout_s) or earlier
+        frame = self._mail.take(timeout_s)
+        self._passed_over += frame is not None and earlier is not None
         self._tell()
-        return frame
+        return frame or earlier
 
     def __enter__(self) -> Self:
         self._thread.start()

@@ -16,6 +16,8 @@ class Times:
 
     def __init__(self) -> None:
         self.deform_ms = self.draw_ms = 0.0
+        self.dropped = 0
+        """The frames that came while an earlier one was drawn."""
         self._totals: deque[float] = deque([0.0] * FRAMES, maxlen=FRAMES)
 
     def note(self, deform_s: float, draw_s: float, total_s: float) -> None:

@@ -153,6 +153,7 @@ class Window:
             self._draw(renderer, screen, frame, start)
             finish(renderer.context)  # what is drawn now counts as this frame's, not as the next one's
             self.times.note(frame.step_s, self.clock.now() - stepped, since)
+            self.times.dropped = loop.dropped
             with self._held:
                 title = self.controls.title()
             glfw.set_window_title(self.handle, title)

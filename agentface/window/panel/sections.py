@@ -114,6 +114,8 @@ def frame_time(times: Times) -> None:
     total = times.total_ms
     imgui.text(f"deform {times.deform_ms:.1f} ms   draw {times.draw_ms:.1f} ms")
     imgui.text(f"total {total:.1f} ms   {1000.0 / total if total else 0.0:.0f} frames a second")
+    if times.dropped:
+        imgui.text(f"{times.dropped} frames left out")
     totals = times.totals_ms
     top = max(40.0, float(totals.max()))
     size = (imgui.get_content_region_avail().x, 3.5 * imgui.get_font_size())
