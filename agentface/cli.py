@@ -8,7 +8,7 @@ from typing import Any
 
 import click
 
-from agentface.commands.streams import note, output_told, watch_output
+from agentface.commands.streams import output_told, tell, watch_output
 from agentface.errors import AgentFaceError, DataError
 
 COMMANDS = ("render", "sheet", "serve", "show", "play", "explain", "check", "unwrap", "bench", "calibrate", "figures")
@@ -36,7 +36,7 @@ class _Commands(click.Group):
                 return super().invoke(ctx)
         except AgentFaceError as error:
             # Faults begin with file:line, which editors follow.
-            note(str(error) if isinstance(error, DataError) else f"agentface: {error}")
+            tell(str(error) if isinstance(error, DataError) else f"agentface: {error}")
             ctx.exit(1)
 
 

@@ -19,7 +19,7 @@ from agentface.commands.options import (
     make_face,
     size_option,
 )
-from agentface.commands.streams import note
+from agentface.commands.streams import tell
 from agentface.errors import DataError, Fault, GraphicsError
 
 if TYPE_CHECKING:
@@ -97,7 +97,7 @@ def _score(document: Path) -> Score:
     if not score.cues:
         raise DataError([Fault(document, None, "", "at least one emotion", "none")])
     for note in score.notes[:_MOST_NOTES]:
-        click.echo(f"note: {note}", err=True)
+        tell(f"note: {note}")
     return score
 
 
@@ -124,5 +124,5 @@ def _film(face: Face, score: Score, shot: Shot, ending: Ending) -> None:
         drawn = run(face, FrameClock(fps), [player], [film], fps=fps, duration=end, stopped=ending.told)
     if drawn < frames:
         filmed_s = max(drawn - 1, 0) / fps
-        note(f"{shot.path}: stopped at {filmed_s:.1f} s of {score.length_s:.1f} s")
+        tell(f"{shot.path}: stopped at {filmed_s:.1f} s of {score.length_s:.1f} s")
         raise SystemExit(ending.code)

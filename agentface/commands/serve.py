@@ -20,7 +20,7 @@ from agentface.commands.options import (
     make_face,
     size_option,
 )
-from agentface.commands.streams import note, say
+from agentface.commands.streams import say, tell
 
 if TYPE_CHECKING:
     from agentface.face import Face
@@ -137,7 +137,7 @@ def _film_now(server: OscServer, face: Face, ending: Ending, shot: Shot, duratio
         frames = run(face, SystemClock(), [server], [film], fps=shot.fps, duration=duration, stopped=ending.told)
     if film.dropped:
         lost = f"{film.dropped} of {frames} frames are left out, as this machine draws too slowly for them"
-        note(f"{shot.path}: {lost}; --every-frame films all of them")
+        tell(f"{shot.path}: {lost}; --every-frame films all of them")
 
 
 def _film_later(server: OscServer, face: Face, ending: Ending, shot: Shot, duration: float, again: Face) -> None:
@@ -163,5 +163,5 @@ def _film_later(server: OscServer, face: Face, ending: Ending, shot: Shot, durat
         end = (last + 0.5) / shot.fps
         drawn = run(again, FrameClock(shot.fps), [replay], [film], fps=shot.fps, duration=end, stopped=ending.told)
     if drawn <= last:
-        note(f"{shot.path}: stopped at {(drawn - 1) / shot.fps:.1f} s of {last / shot.fps:.1f} s")
+        tell(f"{shot.path}: stopped at {(drawn - 1) / shot.fps:.1f} s of {last / shot.fps:.1f} s")
         raise SystemExit(ending.code)

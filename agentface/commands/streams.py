@@ -41,7 +41,7 @@ def output_told() -> Iterator[None]:
         if sys.stdout is not None:
             sys.stdout.flush()
     except StandardOutputError as error:
-        _tell(error)
+        _output_failed(error)
         raise SystemExit(1) from None
 
 
@@ -50,10 +50,10 @@ def say(message: str) -> None:
     try:
         click.echo(message)
     except StandardOutputError as error:
-        _tell(error)
+        _output_failed(error)
 
 
-def note(message: str) -> None:
+def tell(message: str) -> None:
     """Print to the standard error, if there is still one."""
     with suppress(OSError):
         click.echo(message, err=True)
@@ -66,9 +66,9 @@ def console() -> Console:
     return Console(file=_Terminal())  # type: ignore[arg-type]  # all of a file that a console uses
 
 
-def _tell(error: OSError) -> None:
+def _output_failed(error: OSError) -> None:
     reason = f"expected to write it, got: {error.strerror}; give it a file or a program that takes all of it"
-    note(f"agentface: standard output: {reason}")
+    tell(f"agentface: standard output: {reason}")
 
 
 class _Output(io.FileIO):
