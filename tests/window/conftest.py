@@ -87,9 +87,9 @@ def key(name):
     yield from arrives("key", name)
     yield from frames()
 
-def show(**options):
+def show(face=None, **options):
     global window
-    window = Window(Face(compiled=False), **options)
+    window = Window(face or Face(compiled=False), **options)
     draw = window._draw
 
     def drawn(renderer, screen, *rest):

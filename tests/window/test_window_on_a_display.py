@@ -153,3 +153,34 @@ def test_a_dense_display_has_a_larger_panel(on_a_display):
     left, top, right, bottom = seen["slider"]
     assert 35 < bottom - top < 60
     assert 1120 - seen["panel"] < left < right < 1120
+
+
+def test_a_deformer_with_memory(on_a_display):
+    seen = on_a_display("""
+        from tests.deform import jelly
+
+        with jelly.registered() as name:
+            face = Face(deformer=name)
+
+        def lag():
+            return float(np.abs(face._deformer.at(face.pose).vertices - face.geometry.vertices).max())
+
+        def play():
+            yield from frames(3)
+            seen["at rest"] = lag()
+            before = pictures[0].copy()
+            window.controls.change({"jaw_open": 1.0})
+            late = []
+            for _ in range(12):
+                yield from frames(1)
+                late.append(lag())
+            seen["late"] = max(late)
+            yield from until(lambda: face.pose["jaw_open"] == 1.0 and lag() < 1e-6)
+            yield from frames(2)
+            seen["changed"] = bool((pictures[0] != before).any())
+
+        show(face, size=(300, 240))
+    """)
+    assert seen["at rest"] < 1e-6
+    assert seen["late"] > 1e-3
+    assert seen["changed"]
