@@ -13,6 +13,7 @@ from click.testing import CliRunner
 from agentface.cli import cli
 from agentface.errors import GraphicsError
 from agentface.face import Face
+from tests.display import on_a_virtual_display
 
 HEAD = (
     '<emotionml version="1.0" xmlns="http://www.w3.org/2009/10/emotionml"'
@@ -200,8 +201,7 @@ def test_the_window_plays_the_document_and_closes(tmp_path):
     path = tmp_path / "moods.xml"
     path.write_text(f"{HEAD}{SHORT.replace('250', '1500')}</emotionml>")
     command = [
-        "xvfb-run",
-        "--auto-servernum",
+        *on_a_virtual_display(),
         sys.executable,
         "-W",
         "error",

@@ -11,6 +11,8 @@ from typing import Any
 
 import pytest
 
+from tests.display import on_a_virtual_display
+
 PROGRAMS = ("xvfb-run", "xdotool", "xprop")  # Debian: xvfb, xauth, xdotool, x11-utils
 PACKAGES = ("glfw", "imgui_bundle")
 
@@ -128,7 +130,7 @@ def on_a_display():
 
 def _play(scene: str, first: str = "true") -> dict[str, Any]:
     # a display without -noreset forgets everything when its first program ends
-    command = ["xvfb-run", "--auto-servernum", "--server-args=-screen 0 1300x1000x24 -noreset"]
+    command = on_a_virtual_display("-screen 0 1300x1000x24", "-noreset")
     command += ["sh", "-c", f'{first} && exec "$0" -W error -c "$1"', sys.executable, BEFORE + textwrap.dedent(scene)]
     hidden = os.environ | {"DISPLAY": ""}
     done = subprocess.run(command, check=False, capture_output=True, text=True, timeout=240, env=hidden)

@@ -10,13 +10,15 @@ import sys
 
 import pytest
 
+from tests.display import on_a_virtual_display
+
 pytestmark = [pytest.mark.gl, pytest.mark.slow]
 
 FILMING = """
 "$0" -m agentface $COMMAND &
 face=$!
-until window=$(xdotool search --name "for help"); do sleep 0.1; done
-until ls *.mp4 2>/dev/null; do xdotool windowfocus $window key r; sleep 0.5; done
+until window=$(xdotool search --name "for help"); do kill -0 $face || exit; sleep 0.1; done
+until ls *.mp4 2>/dev/null; do kill -0 $face || exit; xdotool windowfocus $window key r; sleep 0.5; done
 sleep 1
 $END
 wait $face
@@ -41,7 +43,7 @@ def test_the_film_of_a_window_that_ends(tmp_path, command, end, code):
     pytest.importorskip("glfw")
     script = FILMING.replace("$COMMAND", command).replace("$END", end)
     done = subprocess.run(
-        ["xvfb-run", "--auto-servernum", "sh", "-c", script, sys.executable],
+        [*on_a_virtual_display(), "sh", "-c", script, sys.executable],
         check=False, capture_output=True, text=True, timeout=120, cwd=tmp_path, env=os.environ | {"DISPLAY": ""},
     )  # fmt: skip
     assert f"code {code}" in done.stdout, done.stdout + done.stderr

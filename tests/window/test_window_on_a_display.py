@@ -7,6 +7,8 @@ import sys
 
 import pytest
 
+from tests.display import on_a_virtual_display
+
 pytestmark = [pytest.mark.gl, pytest.mark.slow]
 
 WITHOUT_PANEL = """
@@ -35,7 +37,7 @@ print(len(said), said[0])
 @pytest.mark.skipif(not shutil.which("xvfb-run"), reason="no virtual display on this machine (Debian: xvfb, xauth)")
 def test_without_imgui_the_window_shows_a_face_that_changes_and_says_how_to_get_the_panel():
     pytest.importorskip("glfw")
-    command = ["xvfb-run", "--auto-servernum", sys.executable, "-c", WITHOUT_PANEL]
+    command = [*on_a_virtual_display(), sys.executable, "-c", WITHOUT_PANEL]
     hidden = os.environ | {"DISPLAY": ""}
     done = subprocess.run(command, check=False, capture_output=True, text=True, timeout=120, env=hidden)
     assert done.returncode == 0, done.stderr
