@@ -16,7 +16,7 @@ from agentface.resources import DEFAULT_FACE
 from tests.deform import jelly
 from tests.io.osc_bytes import message
 
-pytestmark = pytest.mark.gl
+pytestmark = [pytest.mark.gl, pytest.mark.slow]
 MOODS = """<emotionml version="1.0" xmlns="http://www.w3.org/2009/10/emotionml"
  category-set="http://www.w3.org/TR/emotion-voc/xml#big6">
 <emotion duration="500"><category name="surprise"/></emotion></emotionml>"""

@@ -16,7 +16,7 @@ import pytest
 
 from agentface.commands.ending import until_told
 
-pytestmark = pytest.mark.gl
+pytestmark = [pytest.mark.gl, pytest.mark.slow]
 SERVE = (sys.executable, "-m", "agentface", "serve", "--osc", "127.0.0.1:0", "--size", "96x64", "--fps", "20")
 
 

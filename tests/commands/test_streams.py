@@ -8,6 +8,7 @@ import sys
 
 import pytest
 
+pytestmark = pytest.mark.slow
 FULL, CLOSED, BROKEN = (
     ("> /dev/full", "No space left on device"),
     (">&-", "Bad file descriptor"),
