@@ -88,7 +88,7 @@ class Witness:
 
 
 @dataclass(frozen=True, slots=True)
-class Source:
+class ShaderSource:
     """One shader's text with its includes in place; ``files[n]`` is the file that ``#line`` calls ``n``."""
 
     text: str
@@ -104,7 +104,7 @@ class Source:
         return _PLACE.sub(place, log)
 
 
-def read_source(name: str, folder: Path | None = None, defines: tuple[str, ...] = ()) -> Source:
+def read_source(name: str, folder: Path | None = None, defines: tuple[str, ...] = ()) -> ShaderSource:
     """The shader ``name`` from ``shaders/`` (or ``folder``); each ``#include "x.glsl"`` is put in once.
 
     ``defines`` are defined for the preprocessor behind the line ``#version``.
@@ -117,7 +117,7 @@ def read_source(name: str, folder: Path | None = None, defines: tuple[str, ...] 
     version = next((number for number, line in enumerate(lines, start=1) if line.startswith("#version")), 0)
     if defines:
         lines[version:version] = [*(f"#define {name}" for name in defines), f"#line {version + 1} 0"]
-    return Source("\n".join(lines) + "\n", tuple(files))
+    return ShaderSource("\n".join(lines) + "\n", tuple(files))
 
 
 def _lines(path: Path, files: list[Path], wanted_by: str) -> list[str]:
@@ -178,7 +178,7 @@ def compile_program(
         _explain(str(error), vertex, fragment, sources)
 
 
-def _explain(log: str, vertex: str, fragment: str | None, sources: list[Source]) -> NoReturn:
+def _explain(log: str, vertex: str, fragment: str | None, sources: list[ShaderSource]) -> NoReturn:
     source = sources[-1] if "fragment_shader" in log else sources[0]
     names = vertex if fragment is None else f"{vertex} and {fragment}"
     said = source.explain(_TITLE.sub("", log)).strip()
