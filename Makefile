@@ -11,8 +11,11 @@ debian = if [ "$$(id -u)" = 0 ] && command -v apt-get >/dev/null; \
 	else echo "Debian packages are missing. Run this once:"; \
 	echo "    sudo apt-get install --no-install-recommends $(1)"; exit 1; fi
 
+# programs that only tests need, and the Debian packages that bring them; as in tests/tools.py
+TOOLS := xvfb-run:xvfb xauth:xauth xdotool:xdotool xprop:x11-utils oscsend:liblo-tools oscdump:liblo-tools node:nodejs npm:npm
+
 .DEFAULT_GOAL := help
-.PHONY: help demo test build clean opengl
+.PHONY: help demo test build clean opengl tools
 
 help: ## this list
 	@sed -n 's/^\([a-z]*\):.*## /make \1\t/p' $(MAKEFILE_LIST) | expand -t 14
@@ -23,7 +26,11 @@ demo: $(INSTALLED) opengl ## draw out/expressions.png, film out/demo.mp4 with an
 
 # dozens of tests start Python anew: it may keep what it compiled, even where the environment says otherwise
 test: export PYTHONDONTWRITEBYTECODE =
-test: $(INSTALLED) opengl ## ruff, mypy and all tests
+# a skipped test is a failed one
+test: export AGENTFACE_REQUIRE_TOOLS = 1
+# goldens are software's pictures, also on a machine with a graphics card
+test: export LIBGL_ALWAYS_SOFTWARE = 1
+test: $(INSTALLED) opengl tools ## ruff, mypy and all tests
 	@$(BIN)/ruff check $(CODE)
 	@$(BIN)/ruff format --check $(CODE)
 	@$(BIN)/mypy
@@ -47,3 +54,7 @@ $(INSTALLED): pyproject.toml
 opengl: $(INSTALLED)
 	@$(BIN)/python -c 'import ctypes; [ctypes.CDLL(f"lib{name}.so.1") for name in ("EGL", "GL")]' 2>/dev/null \
 		|| { $(call debian,libegl1 libgl1); }
+
+tools:
+	@missing=; for tool in $(TOOLS); do command -v $${tool%%:*} >/dev/null || missing="$$missing $${tool#*:}"; done; \
+	if [ -n "$$missing" ]; then $(call debian,$$missing); fi

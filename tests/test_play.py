@@ -1,7 +1,6 @@
 from __future__ import annotations
 
 import os
-import shutil
 import subprocess
 import sys
 
@@ -12,6 +11,7 @@ from click.testing import CliRunner
 from agentface.cli import cli
 from agentface.errors import GraphicsError
 from agentface.face import Face
+from tests.tools import require
 
 HEAD = (
     '<emotionml version="1.0" xmlns="http://www.w3.org/2009/10/emotionml"'
@@ -175,6 +175,7 @@ WATCHED = """
 import sys
 from agentface.cli import cli
 from agentface.face import Face
+from tests.tools import require
 
 set_emotion = Face.set_emotion
 
@@ -189,8 +190,8 @@ cli(["play", *sys.argv[1:]])
 
 @pytest.mark.gl
 @pytest.mark.slow
-@pytest.mark.skipif(not shutil.which("xvfb-run"), reason="no virtual display on this machine (Debian: xvfb, xauth)")
 def test_the_window_plays_the_document_and_closes(tmp_path):
+    require("xvfb-run", "xauth")
     pytest.importorskip("glfw")
     path = tmp_path / "moods.xml"
     path.write_text(f"{HEAD}{SHORT.replace('250', '1500')}</emotionml>")
