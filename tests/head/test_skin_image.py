@@ -20,7 +20,8 @@ from agentface.cli import cli
 from agentface.deform.geometry import FaceGeometry
 from agentface.errors import DataError
 from agentface.head.look import load_look, read_look
-from agentface.head.skin_image import bled, read_texture, skin_image
+from agentface.head.skin_image import bled, skin_image
+from agentface.head.texture_file import read_texture
 from agentface.mesh.normals import vertex_normals
 from agentface.resources import face_folder
 from agentface.view.renderer import Renderer
