@@ -14,7 +14,7 @@ from agentface.errors import DataError, Fault, InvalidValueError
 if TYPE_CHECKING:
     from agentface.mesh.glb import MeshArrays
 
-_Reader = Callable[[Path], object]
+_Loader = Callable[[Path], object]
 
 
 @click.command()
@@ -84,14 +84,14 @@ def _faults_of(read: Callable[[], object]) -> list[Fault]:
     return []
 
 
-def _rule_readers() -> dict[str, _Reader]:
+def _rule_readers() -> dict[str, _Loader]:
     from agentface.emotion.tables import load_blends, load_emotions
     from agentface.studies.calibration.action_units import load_action_units
 
     return {"emotions.yaml": load_emotions, "blends.yaml": load_blends, "action_units.yaml": load_action_units}
 
 
-def _face_readers() -> dict[str, _Reader]:
+def _face_readers() -> dict[str, _Loader]:
     from agentface.config import load
     from agentface.head.asymmetry import read_asymmetry
     from agentface.head.look import read_look

@@ -13,7 +13,7 @@ from agentface.errors import AgentFaceError
 FILM_FPS = 30.0
 
 
-class Film(Protocol):
+class FilmWriter(Protocol):
     """What takes the frames of a film: ``agentface.io.video.VideoWriter``."""
 
     def add(self, image: Bytes, time_s: float) -> None:
@@ -40,14 +40,14 @@ class Capture:
     def __init__(
         self,
         write_picture: Callable[[Path, Bytes], None],
-        open_film: Callable[[Path, tuple[int, int], float], Film],
+        open_film: Callable[[Path, tuple[int, int], float], FilmWriter],
         say: Callable[[str], object] = print,
         folder: Path = Path(),
         now: Callable[[], datetime] = datetime.now,
     ) -> None:
         self._write_picture, self._open_film, self._say = write_picture, open_film, say
         self._folder, self._now = folder, now
-        self._film: Film | None = None
+        self._film: FilmWriter | None = None
         self._path, self._size = Path(), (0, 0)
         self._start = self._last = 0.0
         self.message = ""

@@ -11,7 +11,7 @@ from agentface.conventions import Doubles, Indices
 from agentface.head.build.partition import Loops, base_labels, find_loops, halves, order_by_region, partition, ranges
 from agentface.head.build.source import BaseMesh
 from agentface.head.build.splits import WHOLE, across_rings, between_rings
-from agentface.head.build.topology import Skin
+from agentface.head.build.topology import SkinTopology
 from agentface.head.regions import REGIONS, REST
 from agentface.head.ring_names import LidRing, LipRing
 from agentface.mesh.thin import Thinner
@@ -64,7 +64,7 @@ class HeadTopology:
         self.loops: Loops = find_loops(quads[island == _FACE], quads[island == _BAG], sockets)
         self.bag_vertices = np.setdiff1d(quads[island == _BAG], self.loops.lips[0])
         levels = self._levels(island[chosen])
-        self.skin = Skin(self.quads, levels, mesh.positions, mesh.mirror, self._splits(levels))
+        self.skin = SkinTopology(self.quads, levels, mesh.positions, mesh.mirror, self._splits(levels))
         self.points: Doubles
         self.region: Indices
         self.sub: Indices
