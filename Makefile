@@ -3,7 +3,9 @@ PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 INSTALLED := $(VENV)/.installed
-CODE := agentface tests examples
+CODE := agentface tests examples docs
+PARALLEL := -n auto --maxprocesses 4 --dist worksteal
+COVERED := $(CURDIR)/out/coverage/data
 
 # $(call debian,PACKAGES): install Debian packages when root, else print the command that does and stop
 debian = if [ "$$(id -u)" = 0 ] && command -v apt-get >/dev/null; \
@@ -15,7 +17,7 @@ debian = if [ "$$(id -u)" = 0 ] && command -v apt-get >/dev/null; \
 TOOLS := xvfb-run:xvfb xauth:xauth xdotool:xdotool xprop:x11-utils oscsend:liblo-tools oscdump:liblo-tools node:nodejs npm:npm
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test build clean opengl tools
+.PHONY: help demo test lint quick soak matrix docs build clean opengl tools
 
 help: ## this list
 	@sed -n 's/^\([a-z]*\):.*## /make \1\t/p' $(MAKEFILE_LIST) | expand -t 14
@@ -25,16 +27,36 @@ demo: $(INSTALLED) opengl ## draw out/expressions.png, film out/demo.mp4 with an
 	@printf '\nThese commands are in %s.\n' $(BIN)
 
 # dozens of tests start Python anew: it may keep what it compiled, even where the environment says otherwise
-test: export PYTHONDONTWRITEBYTECODE =
-# a skipped test is a failed one
-test: export AGENTFACE_REQUIRE_TOOLS = 1
+test quick soak matrix: export PYTHONDONTWRITEBYTECODE =
 # goldens are software's pictures, also on a machine with a graphics card
-test: export LIBGL_ALWAYS_SOFTWARE = 1
-test: $(INSTALLED) opengl tools ## ruff, mypy and all tests
+test quick soak matrix: export LIBGL_ALWAYS_SOFTWARE = 1
+# a skipped test is a failed one
+test soak: export AGENTFACE_REQUIRE_TOOLS = 1
+test: export COVERAGE_FILE = $(COVERED)
+
+lint: $(INSTALLED)
 	@$(BIN)/ruff check $(CODE)
 	@$(BIN)/ruff format --check $(CODE)
 	@$(BIN)/mypy
-	@$(BIN)/pytest -n auto --maxprocesses 4 --dist worksteal
+
+test: $(INSTALLED) opengl tools lint ## ruff, mypy, all tests but the soaking ones, and how much of the code they ran
+	@rm -rf $(dir $(COVERED)) && mkdir -p $(dir $(COVERED))
+	@$(BIN)/coverage run -m pytest $(PARALLEL)
+	@$(BIN)/coverage combine --quiet
+	@$(BIN)/coverage report
+
+quick: $(INSTALLED) opengl lint ## a verdict within a minute: ruff, mypy and the tests that are not slow
+	@$(BIN)/pytest -q $(PARALLEL) -m "not slow and not soak"
+
+soak: $(INSTALLED) opengl tools ## the tests that take minutes
+	@$(BIN)/pytest $(PARALLEL) -m soak --timeout 3600
+
+matrix: $(INSTALLED) opengl tools ## all tests on every Python that is found, and once with the lowest versions of the libraries
+	@$(BIN)/python tests/matrix.py $(PARALLEL)
+
+docs: $(INSTALLED) ## the documents and the reference as a site, into out/site/
+	@PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/zensical build --clean --strict
+	@printf 'open out/site/index.html\n'
 
 build: $(INSTALLED) ## the wheel and the source archive, into dist/
 	@$(BIN)/python -m build --no-isolation

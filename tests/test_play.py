@@ -46,6 +46,7 @@ def frames(path):
         return [(float(frame.time), frame.to_ndarray(format="rgb24")) for frame in film.decode(video=0)]
 
 
+@pytest.mark.slow
 @pytest.mark.gl
 def test_a_film_has_a_frame_at_every_step_and_is_the_same_twice(short, tmp_path):
     films = [tmp_path / f"{name}.mp4" for name in "ab"]
@@ -161,6 +162,7 @@ def without_a_display():
     return {name: value for name, value in os.environ.items() if name not in ("DISPLAY", "WAYLAND_DISPLAY")}
 
 
+@pytest.mark.slow
 def test_without_a_display_it_says_how_to_film(short):
     pytest.importorskip("glfw")
     command = [sys.executable, "-m", "agentface", "play", str(short)]

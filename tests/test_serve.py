@@ -47,6 +47,7 @@ def test_usage(options):
     fail(*options, code=2)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", [signal.SIGINT, signal.SIGTERM])
 def test_it_answers_and_ends_when_told(kind):
     from pythonosc.osc_message import OscMessage
@@ -75,6 +76,7 @@ def test_it_answers_and_ends_when_told(kind):
         server.wait()
 
 
+@pytest.mark.slow
 @pytest.mark.gl
 def test_it_records_a_film(tmp_path):
     import av
@@ -89,6 +91,7 @@ def test_it_records_a_film(tmp_path):
     assert times == sorted(set(times))
 
 
+@pytest.mark.slow
 @pytest.mark.gl
 def test_it_films_and_shows_a_look(tmp_path, monkeypatch):
     from PIL import Image
@@ -114,6 +117,7 @@ def test_it_films_and_shows_a_look(tmp_path, monkeypatch):
     assert shown == [("ginger", None), ("ginger", "portrait")]
 
 
+@pytest.mark.slow
 @pytest.mark.gl
 def test_it_films_every_frame_when_drawing_waits(tmp_path):
     import av

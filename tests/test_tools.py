@@ -35,6 +35,7 @@ def verdict(folder: Path, program: str, required: str) -> tuple[int, str]:
     return done.returncode, done.stdout
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("required", "code", "counts"),
     [("0", 0, "1 passed, 3 skipped, 1 xfailed"), ("1", 1, "2 failed, 1 passed, 1 xfailed, 1 error")],
@@ -46,6 +47,7 @@ def test_a_skip_is_a_failure_when_tools_are_required(tmp_path, required, code, c
     assert "no-such-program" in output
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("required", "code"), [("0", 5), ("1", 2)])
 def test_a_file_that_is_skipped_whole_is_a_failure_too(tmp_path, required, code):
     returned, output = verdict(tmp_path, "import pytest; pytest.importorskip('no_such_module')", required)

@@ -58,6 +58,7 @@ def sparse(count, seed):
         yield number, FacePose(np.where(draw.random(len(low)) < 0.15, high, np.maximum(low, 0.0)).astype(np.float32))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("face", FACES)
 def test_no_emotion_turns_skin_over(face):
     assert turned_over(face, feelings()) == {}
@@ -108,6 +109,7 @@ def test_little_is_left_out_as_a_fold(face):
     assert fold_vertices(model).mean() < 0.21
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("face", FACES)
 def test_what_has_flipped_or_come_through_is_found(face):
     """The detectors themselves: a vertex pushed over its neighbours, a lid into the eye, a lip into the teeth."""

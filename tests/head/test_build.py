@@ -53,6 +53,7 @@ def test_the_mirror_of_the_finer_mesh_is_its_mirror_image():
     np.testing.assert_allclose(finer[image] * [-1, 1, 1], finer, atol=1e-12)
 
 
+@pytest.mark.slow
 @given(st.lists(st.integers(0, 2), min_size=36, max_size=36))
 def test_a_skin_of_any_levels_is_closed_and_symmetric(levels):
     points, quads, mirror = sheet()

@@ -16,6 +16,8 @@ from osc_bytes import message
 
 from tests.tools import require
 
+pytestmark = pytest.mark.slow
+
 
 @pytest.fixture(scope="module")
 def port():

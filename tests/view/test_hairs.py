@@ -38,6 +38,7 @@ def turned(angles):
     )
 
 
+@pytest.mark.slow
 @settings(max_examples=20)
 @given(st.tuples(*[st.floats(-3, 3)] * 3), st.tuples(*[st.floats(-1, 1)] * 3), st.floats(0, 1))
 def test_hairs_move_rigidly_with_a_rigid_skin(angles, shift, t):
@@ -129,6 +130,7 @@ def test_hair_covers_the_crown_and_leaves_the_face_and_ears_free(grown):
     assert gap.max() < 0.03
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("quality", ["fast", "portrait"])
 @pytest.mark.parametrize("style", ["cropped", "swept", "bob", "bun"])
 def test_strands_grow_on_the_scalp_and_stay_out_of_head_and_face(grown, style, quality):
@@ -160,6 +162,7 @@ def test_the_same_generator_gives_the_same_strands(grown):
     assert first.points.tobytes() != other.points.tobytes()
 
 
+@pytest.mark.slow
 @pytest.mark.gl
 @pytest.mark.parametrize("style", ["swept", "bob", "bun"])
 def test_hair_left_out_is_not_missed(grown, style, monkeypatch):
@@ -203,6 +206,7 @@ def test_hair_shades_the_skin_next_to_it(grown):
     assert not hair_shade(model, look.model_copy(update={"style": "none"})).any()
 
 
+@pytest.mark.slow
 @settings(max_examples=20)
 @given(st.tuples(*[st.floats(-0.2, 0.2)] * 3), st.floats(0, 0.03))
 def test_points_pushed_out_of_the_hull_are_above_it(place, height):

@@ -23,6 +23,7 @@ FINER = 2
 """Pixels of the canvas a pixel of the picture."""
 _FONT = 17
 _COLOURS, _ROUNDS = 256, 2
+_PAPER = 247  # what is lighter in all channels is white
 _TINT, _BRIGHT = 0.8, 165.0  # of a tint, how much covers; the light at which it is as it was named
 
 Place = tuple[float, float]
@@ -127,9 +128,11 @@ def in_colours(image: Image) -> bytes:
     """A PNG file in 256 colours, one of them white as it is: paper stays paper."""
     from PIL import Image as Images
 
-    found = image.quantize(_COLOURS - 1, method=Images.Quantize.MEDIANCUT, kmeans=_ROUNDS).getpalette() or []
+    picked = image.quantize(_COLOURS - 1, method=Images.Quantize.MEDIANCUT, kmeans=_ROUNDS).getpalette() or []
+    colours = np.array([*picked[: 3 * (_COLOURS - 1)], 255, 255, 255], np.uint8).reshape(-1, 3)
+    colours[colours.min(axis=1) > _PAPER] = 255
     palette = Images.new("P", (1, 1))
-    palette.putpalette([*found[: 3 * (_COLOURS - 1)], 255, 255, 255])
+    palette.putpalette(colours.tobytes())
     buffer = BytesIO()
     image.quantize(palette=palette, dither=Images.Dither.FLOYDSTEINBERG).save(buffer, "PNG", optimize=True)
     return buffer.getvalue()

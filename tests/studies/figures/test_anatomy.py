@@ -15,7 +15,7 @@ from agentface.studies.figures import expressions, eyes, jaw, looks, muscles, ov
 from agentface.view.camera import Camera
 from agentface.view.renderer import Renderer
 
-pytestmark = pytest.mark.gl
+pytestmark = [pytest.mark.gl, pytest.mark.slow]
 
 
 @pytest.fixture

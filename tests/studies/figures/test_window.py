@@ -33,6 +33,7 @@ def test_without_a_virtual_display_it_says_what_brings_one(monkeypatch, tmp_path
         window.figures("amber")
 
 
+@pytest.mark.slow
 def test_a_window_that_does_not_open_says_why(monkeypatch):
     require("xvfb-run", "xauth")
     with pytest.raises(GraphicsError, match="'nobody'"):
