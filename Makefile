@@ -3,7 +3,7 @@ PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 INSTALLED := $(VENV)/.installed
-CODE := agentface tests examples docs
+CODE := agentface tests examples docs/roles.py
 PARALLEL := -n auto --maxprocesses 4 --dist worksteal
 COVERED := $(CURDIR)/out/coverage/data
 
