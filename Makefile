@@ -62,7 +62,7 @@ build: $(INSTALLED) ## the wheel and the source archive, into dist/
 	@$(BIN)/python -m build --no-isolation
 
 clean: ## remove everything that the other targets made
-	rm -rf $(VENV) out dist build .pytest_cache .mypy_cache .ruff_cache .hypothesis .benchmarks
+	rm -rf $(VENV) out dist build .cache .pytest_cache .mypy_cache .ruff_cache .hypothesis .benchmarks
 	find $(CODE) -name __pycache__ -prune -exec rm -rf {} +
 
 # Debian's python3 comes without ensurepip; pip learned --group with 25.1

@@ -21,11 +21,22 @@ FACES = ("amber", "onyx")
 @pytest.mark.slow
 @pytest.mark.parametrize("face", FACES)
 def test_random_poses(face):
+    check_poses(face, SEED)
+
+
+@pytest.mark.soak
+@pytest.mark.parametrize("seed", range(5))
+@pytest.mark.parametrize("face", FACES)
+def test_ten_thousand_random_poses_more(face, seed):
+    check_poses(face, seed)
+
+
+def check_poses(face, seed):
     model = head_model(face)
     deformer, edges, poking = deformer_of(face), Edges.of(model), Poking(model)
     outside = ~edges.folding()
     flipped, through = {}, {}
-    for number, pose in enumerate(random_poses(COUNT, SEED)):
+    for number, pose in enumerate(random_poses(COUNT, seed)):
         geometry = deformer.at(pose)
         for name in ("vertices", "normals", "wrinkles", "eye_rotations", "jaw", "head"):
             assert np.isfinite(getattr(geometry, name)).all(), (number, name)
