@@ -34,13 +34,25 @@ def lowest(project: dict) -> list[str]:
 
 
 def python_of(version: str) -> str | None:
-    """The command of a Python that runs, or None: a shim of a version manager may be there without one."""
-    command = f"python{version}"
-    try:
-        done = subprocess.run([command, "-c", "import ensurepip, venv"], check=False, capture_output=True, timeout=60)
-    except OSError:
-        return None
-    return None if done.returncode else command
+    """The command of a Python that runs, on the PATH or among those of pyenv and uv, or None.
+
+    A version manager may have a ``python3.x`` on the PATH that does nothing but say so.
+    """
+    homes = (
+        Path(os.environ.get("PYENV_ROOT", Path.home() / ".pyenv")) / "versions",
+        Path(os.environ.get("UV_PYTHON_INSTALL_DIR", Path.home() / ".local/share/uv/python")),
+    )
+    kept = [str(path) for home in homes for path in sorted(home.glob(f"*{version}.*/bin/python{version}"))]
+    for command in (f"python{version}", *reversed(kept)):
+        try:
+            done = subprocess.run(
+                [command, "-c", "import ensurepip, venv"], check=False, capture_output=True, timeout=60
+            )
+        except OSError:
+            continue
+        if done.returncode == 0:
+            return command
+    return None
 
 
 def make(name: str, python: str) -> Path:
