@@ -3,7 +3,9 @@ PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 INSTALLED := $(VENV)/.installed
-CODE := agentface tests examples
+CODE := agentface tests examples docs/roles.py
+PARALLEL := -n auto --maxprocesses 4 --dist worksteal
+COVERED := $(CURDIR)/out/coverage/data
 
 # $(call debian,PACKAGES): install Debian packages when root, else print the command that does and stop
 debian = if [ "$$(id -u)" = 0 ] && command -v apt-get >/dev/null; \
@@ -11,8 +13,11 @@ debian = if [ "$$(id -u)" = 0 ] && command -v apt-get >/dev/null; \
 	else echo "Debian packages are missing. Run this once:"; \
 	echo "    sudo apt-get install --no-install-recommends $(1)"; exit 1; fi
 
+# programs that only tests need, and the Debian packages that bring them; as in tests/tools.py
+TOOLS := xvfb-run:xvfb xauth:xauth xdotool:xdotool xprop:x11-utils oscsend:liblo-tools oscdump:liblo-tools node:nodejs npm:npm
+
 .DEFAULT_GOAL := help
-.PHONY: help demo test build clean opengl
+.PHONY: help demo test lint quick soak matrix docs build clean opengl tools
 
 help: ## this list
 	@sed -n 's/^\([a-z]*\):.*## /make \1\t/p' $(MAKEFILE_LIST) | expand -t 14
@@ -22,18 +27,43 @@ demo: $(INSTALLED) opengl ## draw out/expressions.png, film out/demo.mp4 with an
 	@printf '\nThese commands are in %s.\n' $(BIN)
 
 # dozens of tests start Python anew: it may keep what it compiled, even where the environment says otherwise
-test: export PYTHONDONTWRITEBYTECODE =
-test: $(INSTALLED) opengl ## ruff, mypy and all tests
+test quick soak matrix: export PYTHONDONTWRITEBYTECODE =
+# goldens are software's pictures, also on a machine with a graphics card
+test quick soak matrix: export LIBGL_ALWAYS_SOFTWARE = 1
+# a skipped test is a failed one
+test soak: export AGENTFACE_REQUIRE_TOOLS = 1
+test: export COVERAGE_FILE = $(COVERED)
+
+lint: $(INSTALLED)
 	@$(BIN)/ruff check $(CODE)
 	@$(BIN)/ruff format --check $(CODE)
 	@$(BIN)/mypy
-	@$(BIN)/pytest -n auto --maxprocesses 4 --dist worksteal
+
+test: $(INSTALLED) opengl tools lint ## ruff, mypy, all tests but the soaking ones, and how much of the code they ran
+	@rm -rf $(dir $(COVERED)) && mkdir -p $(dir $(COVERED))
+	@$(BIN)/coverage run -m pytest $(PARALLEL)
+	@# a child whose disk was full, which is what some tests are about, has left a file that cannot be read
+	@$(BIN)/coverage combine --quiet 2>/dev/null && rm -f $(COVERED).*
+	@$(BIN)/coverage report
+
+quick: $(INSTALLED) opengl lint ## a verdict within a minute: ruff, mypy and the tests that are not slow
+	@$(BIN)/pytest -q $(PARALLEL) -m "not slow and not soak"
+
+soak: $(INSTALLED) opengl tools ## the tests that take minutes
+	@$(BIN)/pytest $(PARALLEL) -m soak --timeout 3600
+
+matrix: $(INSTALLED) opengl tools ## all tests on every Python that is found, and once with the lowest versions of the libraries
+	@$(BIN)/python tests/matrix.py $(PARALLEL)
+
+docs: $(INSTALLED) ## the documents and the reference as a site, into out/site/
+	@PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/zensical build --clean --strict
+	@printf 'open out/site/index.html\n'
 
 build: $(INSTALLED) ## the wheel and the source archive, into dist/
 	@$(BIN)/python -m build --no-isolation
 
 clean: ## remove everything that the other targets made
-	rm -rf $(VENV) out dist build .pytest_cache .mypy_cache .ruff_cache .hypothesis .benchmarks
+	rm -rf $(VENV) out dist build .cache .pytest_cache .mypy_cache .ruff_cache .hypothesis .benchmarks
 	find $(CODE) -name __pycache__ -prune -exec rm -rf {} +
 
 # Debian's python3 comes without ensurepip; pip learned --group with 25.1
@@ -47,3 +77,7 @@ $(INSTALLED): pyproject.toml
 opengl: $(INSTALLED)
 	@$(BIN)/python -c 'import ctypes; [ctypes.CDLL(f"lib{name}.so.1") for name in ("EGL", "GL")]' 2>/dev/null \
 		|| { $(call debian,libegl1 libgl1); }
+
+tools:
+	@missing=; for tool in $(TOOLS); do command -v $${tool%%:*} >/dev/null || missing="$$missing $${tool#*:}"; done; \
+	if [ -n "$$missing" ]; then $(call debian,$$missing); fi

@@ -53,6 +53,7 @@ def test_every_command_takes_a_face_and_a_deformer(command):
     assert all(option in text for option in FACE_OPTIONS)
 
 
+@pytest.mark.slow
 @pytest.mark.gl
 def test_render_all_options(tmp_path):
     path = tmp_path / "face.png"
@@ -65,6 +66,7 @@ def test_render_all_options(tmp_path):
     assert pixels(path).shape == (120, 160, 3)
 
 
+@pytest.mark.slow
 @pytest.mark.gl
 def test_render_is_what_face_render_gives(tmp_path):
     from agentface import Face
@@ -158,6 +160,7 @@ def test_explain_in_text_and_json(tmp_path):
     assert "fera" in fail("explain", "--emotion", "fera=0.5")
 
 
+@pytest.mark.slow
 def test_check_finds_nothing_in_what_ships():
     result = call("check")
     assert result.exit_code == 0, result.output
@@ -179,6 +182,7 @@ def test_check_prints_all_faults_of_all_files(tmp_path):
     assert "emotions.yaml" not in call("check", "--face", "amber").output
 
 
+@pytest.mark.slow
 def test_check_names_files_that_it_does_not_know(tmp_path):
     (tmp_path / "cake.yaml").write_text("a: 1")
     regions = tmp_path / "regions.yaml"

@@ -78,6 +78,7 @@ def test_an_unreadable_file_is_one_fault(tmp_path):
         Document(tmp_path / "binary.yaml")
 
 
+@pytest.mark.slow
 @given(st.text(max_size=200))
 def test_never_raises_anything_else(tmp_path_factory, text):
     path = tmp_path_factory.mktemp("yaml") / "any.yaml"

@@ -227,6 +227,7 @@ def test_without_the_compiler_the_face_is_the_same(model):
     np.testing.assert_allclose(one.geometry.normals, other.geometry.normals, atol=2e-3)
 
 
+@pytest.mark.slow
 @pytest.mark.gl
 def test_a_picture_from_the_command_line_needs_no_compiler(tmp_path):
     code = (

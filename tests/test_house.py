@@ -14,7 +14,7 @@ import agentface
 
 ROOT = Path(__file__).parent.parent
 SOURCES = sorted(Path(agentface.__file__).parent.rglob("*.py"))
-PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
+PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted((ROOT / "docs").glob("*.md"))]
 
 
 def length(path: Path) -> int:

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import ast
+from collections import defaultdict
 from collections.abc import Iterator
 from functools import cache
+from graphlib import CycleError, TopologicalSorter
 from pathlib import Path
 
 import pytest
@@ -106,3 +108,67 @@ def test_no_exception_is_left_over():
 def test_only_its_owners_know_a_library(library):
     parts = {part for part, module, _ in imports() if module.partition(".")[0] == library}
     assert parts == OWNERS[library]
+
+
+MODULES = {
+    ".".join(path.relative_to(PACKAGE.parent).with_suffix("").parts).removesuffix(".__init__"): path
+    for path in PACKAGE.rglob("*.py")
+}
+
+
+@cache
+def module_graph() -> dict[str, set[str]]:
+    """The modules of the package that each module imports, at any depth of its text, for type checkers too."""
+    graph: dict[str, set[str]] = {module: set() for module in MODULES}
+    for module, path in MODULES.items():
+        for node in ast.walk(ast.parse(path.read_text())):
+            if isinstance(node, ast.ImportFrom):
+                names = [f"{node.module}.{alias.name}" for alias in node.names]
+                graph[module] |= {name if name in MODULES else str(node.module) for name in names}
+            elif isinstance(node, ast.Import):
+                graph[module] |= {alias.name for alias in node.names}
+        graph[module] = (graph[module] & MODULES.keys()) - {module}
+    return graph
+
+
+def room(module: str) -> str:
+    """The folder that a module lies in. In a folder that has rooms, a module beside them is a room of its own."""
+    folder = MODULES[module].parent
+    if MODULES[module].stem == "__init__" or not any(folder.glob("*/*.py")):
+        return str(folder.relative_to(PACKAGE.parent))
+    return str(MODULES[module].relative_to(PACKAGE.parent).with_suffix(""))
+
+
+def circle(graph: dict[str, set[str]]) -> list[str]:
+    """Some circle of a graph, or nothing."""
+    try:
+        TopologicalSorter(graph).prepare()
+    except CycleError as error:
+        return list(error.args[1])
+    return []
+
+
+def test_a_circle_is_found():
+    assert circle({"a": {"b"}, "b": {"c"}, "c": set(), "d": {"a", "c"}}) == []
+    assert set(circle({"a": {"b"}, "b": {"c"}, "c": {"a"}, "d": {"a"}})) == {"a", "b", "c"}
+
+
+def test_no_module_needs_itself():
+    assert circle(module_graph()) == []
+
+
+def test_rooms_inside_parts_need_each_other_one_way():
+    graph: dict[str, set[str]] = defaultdict(set)
+    for module, others in module_graph().items():
+        graph[room(module)] |= {room(other) for other in others} - {room(module)}
+    assert {"agentface/deform/mouth", "agentface/view/gl", "agentface/window/panel", "agentface/face"} <= graph.keys()
+    assert circle(graph) == []
+
+
+def test_no_two_public_classes_share_a_name():
+    places = defaultdict(list)
+    for module, path in MODULES.items():
+        for node in ast.parse(path.read_text()).body:
+            if isinstance(node, ast.ClassDef) and not node.name.startswith("_"):
+                places[node.name].append(module)
+    assert {name: modules for name, modules in places.items() if len(modules) > 1} == {}

@@ -1,7 +1,6 @@
 from __future__ import annotations
 
 import os
-import shutil
 import signal
 import subprocess
 import sys
@@ -14,6 +13,7 @@ from agentface.cli import cli
 from agentface.errors import GraphicsError
 from agentface.face import Face
 from tests.display import on_a_virtual_display
+from tests.tools import require
 
 HEAD = (
     '<emotionml version="1.0" xmlns="http://www.w3.org/2009/10/emotionml"'
@@ -48,6 +48,7 @@ def frames(path):
         return [(float(frame.time), frame.to_ndarray(format="rgb24")) for frame in film.decode(video=0)]
 
 
+@pytest.mark.slow
 @pytest.mark.gl
 def test_a_film_has_a_frame_at_every_step_and_is_the_same_twice(short, tmp_path):
     films = [tmp_path / f"{name}.mp4" for name in "ab"]
@@ -167,6 +168,7 @@ def without_a_display():
     return {name: value for name, value in os.environ.items() if name not in ("DISPLAY", "WAYLAND_DISPLAY")}
 
 
+@pytest.mark.slow
 def test_without_a_display_it_says_how_to_film(short):
     pytest.importorskip("glfw")
     command = [sys.executable, "-m", "agentface", "play", str(short)]
@@ -195,8 +197,8 @@ cli(["play", *sys.argv[1:]])
 
 @pytest.mark.gl
 @pytest.mark.slow
-@pytest.mark.skipif(not shutil.which("xvfb-run"), reason="no virtual display on this machine (Debian: xvfb, xauth)")
 def test_the_window_plays_the_document_and_closes(tmp_path):
+    require("xvfb-run", "xauth")
     pytest.importorskip("glfw")
     path = tmp_path / "moods.xml"
     path.write_text(f"{HEAD}{SHORT.replace('250', '1500')}</emotionml>")

@@ -48,6 +48,7 @@ def test_usage(options):
     fail(*options, code=2)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", [signal.SIGINT, signal.SIGTERM])
 def test_it_answers_and_ends_when_told(kind):
     from pythonosc.osc_message import OscMessage
@@ -76,6 +77,7 @@ def test_it_answers_and_ends_when_told(kind):
         server.wait()
 
 
+@pytest.mark.slow
 @pytest.mark.gl
 def test_it_records_a_film(tmp_path):
     import av
@@ -90,6 +92,7 @@ def test_it_records_a_film(tmp_path):
     assert times == sorted(set(times))
 
 
+@pytest.mark.slow
 @pytest.mark.gl
 def test_it_films_and_shows_a_look(tmp_path, monkeypatch):
     from PIL import Image
@@ -142,6 +145,7 @@ def test_frames_that_are_left_out_are_counted_and_told(tmp_path, monkeypatch):
     assert frames >= 10, "the face was stepped all the same"
 
 
+@pytest.mark.slow
 @pytest.mark.gl
 def test_it_films_every_frame_when_drawing_waits(tmp_path):
     import av

@@ -17,6 +17,8 @@ import pytest
 import agentface
 from agentface.resources import data_folder
 
+pytestmark = pytest.mark.slow
+
 ROOT = Path(__file__).parent.parent
 TOP = {"agentface", f"agentface-{agentface.__version__}.dist-info"}
 

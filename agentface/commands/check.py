@@ -14,7 +14,7 @@ from agentface.errors import DataError, Fault, InvalidValueError
 if TYPE_CHECKING:
     from agentface.mesh.glb import MeshArrays
 
-_Reader = Callable[[Path], object]
+_Loader = Callable[[Path], object]
 
 
 @click.command()
@@ -84,7 +84,7 @@ def _faults_of(read: Callable[[], object]) -> list[Fault]:
     return []
 
 
-def _rule_readers() -> dict[str, _Reader]:
+def _rule_readers() -> dict[str, _Loader]:
     from agentface.emotion.tables import load_blends, load_emotions
     from agentface.io.emotion_vocabularies import load_vocabularies
     from agentface.motion.conflicts import load_conflicts
@@ -99,7 +99,7 @@ def _rule_readers() -> dict[str, _Reader]:
     }
 
 
-def _face_readers() -> dict[str, _Reader]:
+def _face_readers() -> dict[str, _Loader]:
     from agentface.config import load
     from agentface.head.asymmetry import read_asymmetry
     from agentface.head.look import read_look

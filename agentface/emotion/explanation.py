@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from dataclasses import asdict, dataclass
-from typing import Any
+from io import StringIO
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -13,6 +14,9 @@ from agentface.emotion.selector import mode_weights
 from agentface.emotion.sets import CONTRACTION_SETS, INTENSITY_SETS, rescale
 from agentface.emotion.state import EMOTIONS, EmotionState
 from agentface.parameters import MUSCLES
+
+if TYPE_CHECKING:
+    from rich.table import Table
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,9 +69,7 @@ class Explanation:
 
     def render(self, width: int = 120) -> str:
         """The explanation as plain text tables, ``width`` columns wide."""
-        from agentface.emotion.report import render
-
-        return render(self, width)
+        return _report(self, width)
 
 
 def explain(rulebase: RuleBase, state: EmotionState) -> Explanation:
@@ -105,3 +107,47 @@ def _text(mode: Mode, sets: list[str], muscle: str, consequent: str) -> str:
         f"{emotion.capitalize()} is {name}" for emotion, name in zip(mode.emotions, sets, strict=True)
     )
     return f"if {premise} then contraction of {muscle} is {consequent}"
+
+
+def _report(explanation: Explanation, width: int) -> str:
+    from rich.console import Console
+
+    text = StringIO()
+    console = Console(file=text, width=width, color_system=None, legacy_windows=False)
+    active = [f"{name} {value:g}" for name, value in explanation.state.as_dict().items() if value > 0.0]
+    console.print(f"State: {', '.join(active) or 'neutral'}", highlight=False)
+    for mode in explanation.modes:
+        console.print(f"\n{mode.name}, weight {mode.weight:.3f}: {mode.description}", highlight=False)
+        console.print(_rules(mode))
+        console.print(_muscles(mode))
+    console.print(_contractions(explanation))
+    return text.getvalue()
+
+
+def _rules(mode: ModeOutcome) -> Table:
+    from rich.table import Table
+
+    table = Table("strength", "rule that fired", title_justify="left")
+    for rule in sorted(mode.rules, key=lambda rule: (rule.muscle, -rule.strength)):
+        table.add_row(f"{rule.strength:.3f}", rule.text)
+    return table
+
+
+def _muscles(mode: ModeOutcome) -> Table:
+    from rich.table import Table
+
+    table = Table("muscle", "sets, each cut at", "centroid", "contraction")
+    for outcome in mode.muscles:
+        cuts = ", ".join(f"{name} {cut:.3f}" for name, cut in outcome.cuts.items())
+        table.add_row(outcome.muscle, cuts, f"{outcome.centroid:.4f}", f"{outcome.contraction:.4f}")
+    return table
+
+
+def _contractions(explanation: Explanation) -> Table:
+    from rich.table import Table
+
+    table = Table("muscle", "contraction", title="What the face gets", title_justify="left")
+    for muscle, value in explanation.contractions.items():
+        if value > 0.0:
+            table.add_row(muscle, f"{value:.4f}")
+    return table

@@ -140,7 +140,7 @@ def _with_texture(document: Document, look: Look) -> Look:
     """``look`` with the path that its texture lies at; the faults of the picture are the document's."""
     if look.skin.texture is None:
         return look
-    from agentface.head.skin_image import read_texture
+    from agentface.head.texture_file import read_texture
 
     path = document.path.parent / look.skin.texture
     try:

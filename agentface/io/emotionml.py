@@ -70,7 +70,7 @@ def read_emotionml(data: bytes, where: Path | str = "document.xml") -> Score:
     path = Path(where)
     if len(data) > LARGEST_FILE:
         raise DataError([Fault(path, None, "", f"at most {LARGEST_FILE} bytes", "more")])
-    reader = _Reader(path)
+    reader = _DocumentReader(path)
     cues = reader.read(read_xml(data, path))
     if reader.faults:
         raise DataError(sorted(reader.faults, key=lambda fault: fault.line or 0))
@@ -94,7 +94,7 @@ class _Emotion:
     others: str
 
 
-class _Reader:
+class _DocumentReader:
     """Reads one document, and notes every fault on the way."""
 
     def __init__(self, path: Path) -> None:

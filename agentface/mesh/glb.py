@@ -56,7 +56,7 @@ def read_glb(path: Path) -> dict[str, MeshArrays]:
     try:
         if path.stat().st_size > _LARGEST:
             raise DataError([Fault(path, None, "", f"at most {_LARGEST} bytes", f"{path.stat().st_size}")])
-        reader = _Reader(path.read_bytes())
+        reader = _GlbReader(path.read_bytes())
         return {mesh["name"]: reader.mesh(mesh) for mesh in reader.document["meshes"]}
     except OSError as error:
         raise DataError([Fault(path, None, "", "a readable file", error.strerror or "an error")]) from None
@@ -65,7 +65,7 @@ def read_glb(path: Path) -> dict[str, MeshArrays]:
         raise DataError([Fault(path, None, "", "a GLB file as agentface writes it", got)]) from error
 
 
-class _Reader:
+class _GlbReader:
     """Reads the little of glTF that the asset uses; pygltflib takes a second for it, this a few milliseconds."""
 
     def __init__(self, content: bytes) -> None:

@@ -17,7 +17,7 @@ from agentface.view.camera import Camera, named_view
 from agentface.view.gl.context import Witness, finish, make_current, open_context, shader_names
 from agentface.view.gl.noise import SIDE, noise_volume
 from agentface.view.gl.programs import FRAME_BINDING, Programs
-from agentface.view.gl.quality import tier_named
+from agentface.view.gl.quality import quality_named
 from agentface.view.gl.shadow import KeyShadow
 from agentface.view.gl.targets import Targets, checked_size
 from agentface.view.gl.uniforms import pack_frame, pixels_a_metre, shadow_projection, unit
@@ -139,7 +139,7 @@ class Renderer:
         """Draw into the picture of ``targets``, and copy it to the framebuffer ``onto``; ``alpha``: no background."""
         import moderngl
 
-        context, tier = self.context, tier_named(quality)
+        context, detail = self.context, quality_named(quality)
         seen_from = named_view(self.model, camera) if isinstance(camera, str) else camera
         self._frame.write(pack_frame(seen_from, targets.size, geometry.head, self.look.lights))
         self._frame.bind_to_uniform_block(FRAME_BINDING)
@@ -149,7 +149,7 @@ class Renderer:
         self._wrinkles.texture.use(3)
         if self._picture is not None:
             self._picture.use(4)
-        if tier.fine:
+        if detail.fine:
             self._pores.use(5)
             self._shadow.draw()
         self._shadow.use(2)
@@ -159,7 +159,7 @@ class Renderer:
             self._head_hair.draw_solid(quality, seen_from, geometry.head)
             self._begin(targets)
         self.upload_wrinkles(geometry)
-        if tier.fine:
+        if detail.fine:
             self._fields.update_lips(geometry)
         self._programs.set(self._mouth.opening(geometry))
         self._skin(quality, pixels_a_metre(seen_from, targets.size)).draw(wrinkled=self._wrinkled)
@@ -235,13 +235,13 @@ class Renderer:
 
     def _skin(self, quality: str, pixels_a_metre: float) -> Skin:
         """The skin of a quality, cut finely enough where a metre is so many pixels."""
-        tier = tier_named(quality)
-        octave = round(np.log2(pixels_a_metre / _LONGEST_EDGE)) if tier.fine else 0
-        octave = min(max(octave, _COARSEST), _FINEST) if tier.fine else 0
+        detail = quality_named(quality)
+        octave = round(np.log2(pixels_a_metre / _LONGEST_EDGE)) if detail.fine else 0
+        octave = min(max(octave, _COARSEST), _FINEST) if detail.fine else 0
         if (quality, octave) not in self._skins:
-            programs = self._programs.skins(tier.skin)
+            programs = self._programs.skins(detail.skin)
             self._skins[quality, octave] = (
-                self._meshes.fine(programs, 2.0**-octave) if tier.fine else self._meshes.coarse(programs)
+                self._meshes.fine(programs, 2.0**-octave) if detail.fine else self._meshes.coarse(programs)
             )
         return self._skins[quality, octave]
 
@@ -274,7 +274,7 @@ class Renderer:
         return dressed
 
     def _targets_for(self, size: tuple[int, int], quality: str) -> Targets:
-        key = checked_size(size), tier_named(quality).samples
+        key = checked_size(size), quality_named(quality).samples
         if key not in self._targets:
             if len(self._targets) >= 4:
                 self._targets.pop(next(iter(self._targets))).release()

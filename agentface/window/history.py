@@ -12,7 +12,7 @@ LEVELS = 200
 
 
 @dataclass(frozen=True, slots=True)
-class Change:
+class Edit:
     """The values of the same names before and after."""
 
     before: Values
@@ -26,8 +26,8 @@ class History:
     """
 
     def __init__(self) -> None:
-        self._done: list[Change] = []
-        self._undone: list[Change] = []
+        self._done: list[Edit] = []
+        self._undone: list[Edit] = []
         self._gesture: str | None = None
 
     @property
@@ -49,7 +49,7 @@ class History:
         else:
             self.settle()
         self._gesture = gesture
-        self._done.append(Change(before, after))
+        self._done.append(Edit(before, after))
         del self._done[:-LEVELS]
 
     def settle(self) -> None:

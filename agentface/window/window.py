@@ -185,7 +185,7 @@ class Window:
         beside = round(self._panel_width() * pixels[0] / max(points[0], 1))
         size = max(pixels[0] - beside, 1), pixels[1]
         quality = self.controls.quality
-        samples = QUALITIES[quality]
+        samples = QUALITIES[quality].samples
         if self._targets is None or (self._targets.size, self._targets.wanted) != (size, samples):
             if self._targets is not None:
                 self._targets.release()

@@ -21,11 +21,22 @@ FACES = ("amber", "onyx")
 @pytest.mark.slow
 @pytest.mark.parametrize("face", FACES)
 def test_random_poses(face):
+    check_poses(face, SEED)
+
+
+@pytest.mark.soak
+@pytest.mark.parametrize("seed", range(5))
+@pytest.mark.parametrize("face", FACES)
+def test_ten_thousand_random_poses_more(face, seed):
+    check_poses(face, seed)
+
+
+def check_poses(face, seed):
     model = head_model(face)
     deformer, edges, poking = deformer_of(face), Edges.of(model), Poking(model)
     outside = ~edges.folding()
     flipped, through = {}, {}
-    for number, pose in enumerate(random_poses(COUNT, SEED)):
+    for number, pose in enumerate(random_poses(COUNT, seed)):
         geometry = deformer.at(pose)
         for name in ("vertices", "normals", "wrinkles", "eye_rotations", "jaw", "head"):
             assert np.isfinite(getattr(geometry, name)).all(), (number, name)
@@ -58,6 +69,7 @@ def sparse(count, seed):
         yield number, FacePose(np.where(draw.random(len(low)) < 0.15, high, np.maximum(low, 0.0)).astype(np.float32))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("face", FACES)
 def test_no_emotion_turns_skin_over(face):
     assert turned_over(face, feelings()) == {}
@@ -108,6 +120,7 @@ def test_little_is_left_out_as_a_fold(face):
     assert fold_vertices(model).mean() < 0.21
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("face", FACES)
 def test_what_has_flipped_or_come_through_is_found(face):
     """The detectors themselves: a vertex pushed over its neighbours, a lid into the eye, a lip into the teeth."""

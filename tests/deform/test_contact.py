@@ -70,6 +70,7 @@ def random_poses(count, seed):
         yield FacePose(values.astype(np.float32))
 
 
+@pytest.mark.slow
 def test_lips_and_teeth_never_pass_through_each_other(face):
     mouth, deformer = Mouth(FACES[face]), deformer_of(face)
     for pose in random_poses(150, seed=5):
@@ -95,6 +96,7 @@ def test_tight_lips_that_smile_do_not_pass_through_each_other(face, muscles):
     assert Mouth(FACES[face]).crossings(geometry.vertices, geometry.jaw) == (0, 0, 0)
 
 
+@pytest.mark.slow
 def test_lips_of_muscles_at_their_ends_hardly_ever_pass_through_each_other(face):
     """Muscles at 0 or 1 are the hardest: at most one pose in ten, by a few edges; none through the teeth."""
     mouth, deformer = Mouth(FACES[face]), deformer_of(face)
@@ -142,6 +144,7 @@ def test_lips_that_only_touch_stay_bit_for_bit(face):
         np.testing.assert_array_equal(points, FACES[face].vertices)
 
 
+@pytest.mark.slow
 @settings(max_examples=20)
 @given(st.floats(0.3, 3), st.floats(-1.5, 1.5))
 def test_overlapping_lips_part_by_half_each(depth, slide):
@@ -221,6 +224,7 @@ def test_contact_is_symmetric(face):
         np.testing.assert_allclose(other, one[model.mirror] * flip, atol=1e-5)
 
 
+@pytest.mark.slow
 def test_contact_is_continuous(face):
     """Two poses a hair apart end up a few hairs apart, also where columns change their neighbours across."""
     model, tables = FACES[face], TABLES[face]

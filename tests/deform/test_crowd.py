@@ -37,6 +37,7 @@ def assert_same(one, other):
         np.testing.assert_array_equal(getattr(one, field.name), getattr(other, field.name), err_msg=field.name)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("face", MODELS)
 def test_each_face_is_what_the_deformer_makes_of_its_pose(face):
     poses = random_poses(20)
@@ -76,6 +77,7 @@ def test_a_crowd_of_nobody_has_no_faces(pair):
     assert len(pair.deform(np.zeros((0, COUNT)))) == 0
 
 
+@pytest.mark.slow
 def test_a_coarser_face_makes_a_crowd_too():
     model = thinned(MODELS["amber"], 4000)
     poses = random_poses(2)

@@ -22,6 +22,7 @@ def image(pose):
     return FacePose(values)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("compiled", [True, False])
 @pytest.mark.parametrize("face", ["amber", "onyx"])
 def test_a_mirrored_pose_makes_the_mirrored_face(face, compiled):

@@ -32,11 +32,13 @@ def test_a_ramp_alone_is_smooth(inference: Inference, emotion: str):
     assert largest_step(inference, emotion, {}) <= 0.03
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("emotion", "other"), list(permutations(EMOTIONS, 2)))
 def test_a_ramp_against_another_emotion_is_smooth(inference: Inference, emotion: str, other: str):
     assert max(largest_step(inference, emotion, {other: level}) for level in LEVELS.tolist()) <= LIMIT
 
 
+@pytest.mark.slow
 @settings(max_examples=150, deadline=None)
 @given(st.lists(st.floats(0.0, 1.0), min_size=6, max_size=6), st.sampled_from(EMOTIONS))
 def test_a_ramp_through_a_mix_of_all_six_is_smooth(intensities: list[float], emotion: str):
@@ -62,6 +64,7 @@ def allowed_rows() -> list[list[int]]:
     return [row.tolist() for row in rows if row.min() >= 0 and row.max() <= 4]
 
 
+@pytest.mark.slow
 @settings(max_examples=25, deadline=None)
 @given(st.data())
 def test_any_rules_that_the_files_may_hold_are_smooth(data: st.DataObject):

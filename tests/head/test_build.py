@@ -10,7 +10,7 @@ from agentface.head.build.loops import border_loops, rings
 from agentface.head.build.mouth_parts import dental_arch, eyeball
 from agentface.head.build.partition import halves
 from agentface.head.build.subdivide import catmull_clark, children, mirror_level
-from agentface.head.build.topology import Skin, balanced
+from agentface.head.build.topology import SkinTopology, balanced
 from agentface.mesh.thin import Thinner, smallest_angle
 
 SIDE = 7
@@ -53,12 +53,13 @@ def test_the_mirror_of_the_finer_mesh_is_its_mirror_image():
     np.testing.assert_allclose(finer[image] * [-1, 1, 1], finer, atol=1e-12)
 
 
+@pytest.mark.slow
 @given(st.lists(st.integers(0, 2), min_size=36, max_size=36))
 def test_a_skin_of_any_levels_is_closed_and_symmetric(levels):
     points, quads, mirror = sheet()
     levels = np.array(levels, np.int32).reshape(6, 6)
     levels = np.maximum(levels, levels[:, ::-1]).ravel()
-    skin = Skin(quads, levels, points, mirror)
+    skin = SkinTopology(quads, levels, points, mirror)
     placed = skin.place(points)
     np.testing.assert_allclose(placed[skin.mirror] * [-1, 1, 1], placed, atol=1e-12)
     edges = np.concatenate([skin.triangles[:, [i, (i + 1) % 3]] for i in range(3)])

@@ -8,7 +8,7 @@ import pytest
 from agentface.head.build.fold import LidFold, fold_lids
 from agentface.head.build.relax import relaxed
 from agentface.head.build.splits import ACROSS, ALONG, WHOLE, across_rings, between_rings
-from agentface.head.build.topology import Skin
+from agentface.head.build.topology import SkinTopology
 from agentface.head.ring_names import LID_RINGS, LidRing
 from tests.head.test_build import sheet
 
@@ -25,7 +25,7 @@ def column(number):
 
 def skin_of(splits):
     points, quads, mirror = sheet()
-    return points, Skin(quads, np.zeros(len(quads), np.int32), points, mirror, splits)
+    return points, SkinTopology(quads, np.zeros(len(quads), np.int32), points, mirror, splits)
 
 
 def area(points, triangles):

@@ -49,6 +49,7 @@ def test_there_are_looks_of_other_skin_and_hair():
     assert len({look.hair.style for look in read}) >= 4
 
 
+@pytest.mark.slow
 def test_every_look_is_drawn_and_shows_its_skin(context):
     seen: dict[str, dict[float, float]] = {}
     for face, name in LOOKS:
@@ -103,12 +104,14 @@ def test_a_light_needs_a_direction(tmp_path):
         read_look(file)
 
 
+@pytest.mark.slow
 def test_a_picture_repeats_to_the_byte(context):
     for quality in ("fast", "portrait"):
         first, again = (drawn("amber", "umber", context, quality) for _ in range(2))
         np.testing.assert_array_equal(first, again)
 
 
+@pytest.mark.slow
 def test_hair_changes_the_top_and_leaves_the_face(context):
     model = load_model("amber")
     own = load_look(model)
@@ -123,6 +126,7 @@ def test_hair_changes_the_top_and_leaves_the_face(context):
     assert shown.mean() > 0.1
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("value", [{"colour": [0.4, 0.2, 0.05]}, {"parting": 0.8}, {"length": 1.5}, {"volume": 1.8}])
 def test_what_a_look_says_of_hair_is_seen(value, context):
     own = load_look(load_model("amber"))
@@ -130,6 +134,7 @@ def test_what_a_look_says_of_hair_is_seen(value, context):
     assert (np.abs(first - second).max(2) > 20).mean() > 0.005
 
 
+@pytest.mark.slow
 def test_the_command_takes_a_look(tmp_path):
     from PIL import Image
 

@@ -44,6 +44,7 @@ def ring_vertices(model):
     return [vertex for ring in rings for vertex in (*ring.upper, *ring.lower)]
 
 
+@pytest.mark.slow
 def test_there_are_as_many_vertices_as_asked_for():
     for face, model in FACES.items():
         edges = {tuple(sorted(pair)) for a, b, c in model.triangles.tolist() for pair in ((a, b), (b, c), (c, a))}
@@ -160,6 +161,7 @@ def test_what_lies_between_rings_stays_in_the_middle():
     assert 3.5 < (len(finest.between) + len(finest.ringed)) / (len(model.between) + len(model.ringed)) < 4.0
 
 
+@pytest.mark.slow
 def test_the_finer_and_the_coarser_face_move_alike(both):
     model, made = both
     before, now = kept(model, made)

@@ -85,6 +85,7 @@ NOISE = (
 )
 
 
+@pytest.mark.slow
 def test_the_same_frames_give_the_same_bytes_on_any_number_of_cores(tmp_path):
     contents = []
     for name, cores in (("a", 99), ("b", 99), ("c", 1)):
@@ -95,6 +96,7 @@ def test_the_same_frames_give_the_same_bytes_on_any_number_of_cores(tmp_path):
     assert len(read(path)) == 70
 
 
+@pytest.mark.slow
 @pytest.mark.gl
 @pytest.mark.parametrize("name", ["film.mp4", "face-%03d.png"])
 def test_the_same_poses_give_the_same_files(tmp_path, name):
@@ -126,6 +128,7 @@ def serve_later(path: Path, seconds: float, size: str) -> subprocess.Popen:
     )
 
 
+@pytest.mark.slow
 @pytest.mark.gl
 def test_drawing_later_tells_the_time_left(tmp_path):
     with serve_later(tmp_path / "film.mp4", 0.5, "64x48") as server:
@@ -139,6 +142,7 @@ def test_drawing_later_tells_the_time_left(tmp_path):
     assert read(tmp_path / "film.mp4")
 
 
+@pytest.mark.slow
 @pytest.mark.gl
 @pytest.mark.parametrize("name", ["film.mp4", "face-%05d.png"])
 def test_an_interrupt_while_drawing_keeps_what_is_drawn(tmp_path, name):
@@ -164,6 +168,7 @@ def test_an_interrupt_while_drawing_keeps_what_is_drawn(tmp_path, name):
     assert 0 < count < 90
 
 
+@pytest.mark.slow
 def test_a_full_disk_is_told_and_nothing_is_left(tmp_path):
     """The last write is the one that FFmpeg keeps to itself."""
     whole = tmp_path / "whole.mp4"

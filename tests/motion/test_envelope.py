@@ -17,6 +17,7 @@ def run(envelope: Envelope, seconds: float) -> np.ndarray:
     return np.array([envelope.advance(STEP)[0] for _ in range(round(seconds / STEP))])
 
 
+@pytest.mark.slow
 @given(moves)
 def test_never_jumps_however_often_it_is_interrupted(plan):
     envelope = Envelope(1)

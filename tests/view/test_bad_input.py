@@ -140,6 +140,7 @@ def full_disk(monkeypatch):
     resource.setrlimit(resource.RLIMIT_FSIZE, limits)
 
 
+@pytest.mark.slow
 @pytest.mark.gl
 @every_call
 def test_a_full_disk(folder, full_disk, call):

@@ -116,6 +116,7 @@ def test_without_opengl_the_error_names_the_packages(monkeypatch):
         open_context()
 
 
+@pytest.mark.slow
 @pytest.mark.gl
 def test_faces_in_turn_each_draw_in_their_own_context():
     faces = [Face(name, compiled=False) for name in ("amber", "onyx")]

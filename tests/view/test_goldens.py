@@ -54,6 +54,7 @@ def example(name: str):
     return module
 
 
+@pytest.mark.slow
 @pytest.mark.gl
 def test_the_sheet_of_the_demo_looks_as_it_did(goldens, tmp_path):
     example("make_demo").draw_expressions(tmp_path / "expressions.png")
@@ -61,6 +62,7 @@ def test_the_sheet_of_the_demo_looks_as_it_did(goldens, tmp_path):
         goldens.compare("example-make_demo", reduced(image, 4))
 
 
+@pytest.mark.slow
 @pytest.mark.gl
 def test_the_picture_of_set_emotion_looks_as_it_did(goldens, tmp_path, monkeypatch):
     monkeypatch.setattr("sys.argv", ["set_emotion.py", "fear", "0.9", str(tmp_path / "fear.png")])
@@ -82,6 +84,7 @@ class Frames(list):
         return None
 
 
+@pytest.mark.slow
 @pytest.mark.gl
 def test_the_film_of_moods_looks_as_it_did(goldens, tmp_path, monkeypatch):
     frames, moods = Frames(), example("moods")

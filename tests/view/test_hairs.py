@@ -12,7 +12,7 @@ from agentface.view.camera import named_view
 from agentface.view.hair import strands as strands_module
 from agentface.view.hair.brows import BrowLine, brow_hairs, lash_hairs
 from agentface.view.hair.cap import scalp_cap
-from agentface.view.hair.groom import grow
+from agentface.view.hair.groom import groom
 from agentface.view.hair.hairline import Hairline, hair_shade
 from agentface.view.hair.hull import Hull
 from agentface.view.hair.ribbons import roots_along, roots_in_front
@@ -38,6 +38,7 @@ def turned(angles):
     )
 
 
+@pytest.mark.slow
 @settings(max_examples=20)
 @given(st.tuples(*[st.floats(-3, 3)] * 3), st.tuples(*[st.floats(-1, 1)] * 3), st.floats(0, 1))
 def test_hairs_move_rigidly_with_a_rigid_skin(angles, shift, t):
@@ -129,12 +130,13 @@ def test_hair_covers_the_crown_and_leaves_the_face_and_ears_free(grown):
     assert gap.max() < 0.03
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("quality", ["fast", "portrait"])
 @pytest.mark.parametrize("style", ["cropped", "swept", "bob", "bun"])
 def test_strands_grow_on_the_scalp_and_stay_out_of_head_and_face(grown, style, quality):
     model, look, normals, _ = grown
     look = look.model_copy(update={"style": style})
-    strands = grow(model, normals, look, quality, np.random.default_rng(5))
+    strands = groom(model, normals, look, quality, np.random.default_rng(5))
     roots = strands.points[:, 0]
     behind = Hairline(model, look.hairline).behind(roots)
     on_scalp = np.linalg.norm(roots - model.vertices[strands.anchors], axis=1) < 0.02
@@ -154,12 +156,13 @@ def test_strands_grow_on_the_scalp_and_stay_out_of_head_and_face(grown, style, q
 
 def test_the_same_generator_gives_the_same_strands(grown):
     model, look, normals, _ = grown
-    first, again, other = (grow(model, normals, look, "fast", np.random.default_rng(seed)) for seed in (3, 3, 4))
+    first, again, other = (groom(model, normals, look, "fast", np.random.default_rng(seed)) for seed in (3, 3, 4))
     for name in ("points", "anchors", "radii", "paint", "cover"):
         assert getattr(first, name).tobytes() == getattr(again, name).tobytes()
     assert first.points.tobytes() != other.points.tobytes()
 
 
+@pytest.mark.slow
 @pytest.mark.gl
 @pytest.mark.parametrize("style", ["swept", "bob", "bun"])
 def test_hair_left_out_is_not_missed(grown, style, monkeypatch):
@@ -203,6 +206,7 @@ def test_hair_shades_the_skin_next_to_it(grown):
     assert not hair_shade(model, look.model_copy(update={"style": "none"})).any()
 
 
+@pytest.mark.slow
 @settings(max_examples=20)
 @given(st.tuples(*[st.floats(-0.2, 0.2)] * 3), st.floats(0, 0.03))
 def test_points_pushed_out_of_the_hull_are_above_it(place, height):

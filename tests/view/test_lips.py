@@ -36,6 +36,7 @@ def drawn(model, mesh, lips, vertices):
     return mesh.positions(np.concatenate([vertices, places]), np.concatenate([normals, facing]))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("per_cell", [2, 4])
 def test_the_mesh_is_as_closed_as_the_skins(model, per_cell):
     skin = refine(model.triangles, len(model.vertices))
@@ -50,6 +51,7 @@ def test_the_mesh_is_as_closed_as_the_skins(model, per_cell):
     assert borders(mesh.triangles) == borders(skin.triangles)
 
 
+@pytest.mark.slow
 def test_fine_lips_pass_through_the_vertices_and_stay_near_the_mesh(model):
     lips = FineLips(model, 4)
     for vertices in (model.vertices, puckered(model)):
@@ -62,6 +64,7 @@ def test_fine_lips_pass_through_the_vertices_and_stay_near_the_mesh(model):
         np.testing.assert_allclose(np.linalg.norm(normals, axis=1), 1.0, atol=1e-5)
 
 
+@pytest.mark.slow
 def test_fine_lips_are_smoother_than_the_mesh(model):
     """Between neighbouring triangles of the puckered lips the largest angles get smaller, and none turns over."""
     lips, vertices = FineLips(model, 4), puckered(model)

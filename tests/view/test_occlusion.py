@@ -21,6 +21,7 @@ def test_an_open_plate_sees_the_whole_sky():
     np.testing.assert_allclose(ambient_light(vertices, triangles, mirror, []), 1.0)
 
 
+@pytest.mark.slow
 def test_a_plate_above_takes_the_light_that_its_form_factor_says():
     vertices, triangles, mirror = grid(0.15, 0.0)
     above, cover, _ = grid(0.15, 0.15)

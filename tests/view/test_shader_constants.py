@@ -11,15 +11,15 @@ import pytest
 from agentface.resources import data_folder
 from agentface.view.gl import shadow
 from agentface.view.skin import meshes as skin
-from agentface.view.skin import wrinkle_patches as reliefs
+from agentface.view.skin import wrinkle_patches
 
 
 @pytest.mark.parametrize(
     ("file", "pattern", "value"),
     [
-        ("atlas.glsl", r"ATLAS_AZIMUTH = ([\d.]+);", reliefs._AZIMUTH),
-        ("wrinkles.glsl", r"STEEPEST = ([\d.]+);", reliefs.STEEPEST),
-        ("wrinkles.glsl", r"CREASE_SHADE = ([\d.]+);", reliefs._CREASE_SHADE),
+        ("atlas.glsl", r"ATLAS_AZIMUTH = ([\d.]+);", wrinkle_patches._AZIMUTH),
+        ("wrinkles.glsl", r"STEEPEST = ([\d.]+);", wrinkle_patches.STEEPEST),
+        ("wrinkles.glsl", r"CREASE_SHADE = ([\d.]+);", wrinkle_patches._CREASE_SHADE),
         ("shadow.glsl", r"at \+ ([\d.]+) \* n", shadow._CLEARANCE),
         ("shadow.glsl", r"q\.z - ([\d.]+)", shadow._SLACK),
         ("surface.glsl", r"SKIN_COLUMNS = (\d+);", skin._COLUMNS),

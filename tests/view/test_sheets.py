@@ -74,14 +74,14 @@ def test_a_sheets_triangles_face_outward_and_its_places_are_parts(grown):
 
 def test_single_hairs_leave_the_outer_sheets_and_stay_near(grown):
     model, look, found = grown
-    growth = flyaways(
+    hairs = flyaways(
         found, Amount(locks=0, width=0.001, hairs=60, radius=1e-4, points=8), look, np.random.default_rng(1)
     )
-    assert growth.points.shape == (60, 8, 3)
+    assert hairs.points.shape == (60, 8, 3)
     outer = np.concatenate([sheet.points.reshape(-1, 3) for sheet in found[:2]])
-    away = [np.linalg.norm(outer - point, axis=1).min() for point in growth.points.reshape(-1, 3)[::7]]
+    away = [np.linalg.norm(outer - point, axis=1).min() for point in hairs.points.reshape(-1, 3)[::7]]
     assert max(away) < 0.02
-    behind = Hairline(model, look.hairline).behind(growth.points[:, 0])
+    behind = Hairline(model, look.hairline).behind(hairs.points[:, 0])
     assert np.median(behind) > 0.0
 
 

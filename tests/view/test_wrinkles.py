@@ -49,6 +49,7 @@ def places(model, atlas):
     return np.round(column).astype(int), np.round(row).astype(int), outward & (np.abs(azimuth) < 1.2)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["forehead_medial", "glabella", "crows_feet", "nasolabial_smile"])
 def test_the_atlas_holds_the_heights_of_the_skin(renderer, name):
     model = renderer.model
@@ -123,6 +124,7 @@ def test_a_slope_towards_the_key_light_is_brighter(renderer):
             assert (shade * rise <= 1e-3).mean() > 0.9
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("quality", ["fast", "portrait"])
 @pytest.mark.parametrize("name", ["forehead_medial", "nose_side", "crows_feet"])
 def test_a_picture_changes_where_the_train_is_and_nowhere_else(renderer, name, quality):

@@ -1,9 +1,7 @@
 from __future__ import annotations
 
-import importlib.util
 import json
 import os
-import shutil
 import subprocess
 import sys
 import textwrap
@@ -12,9 +10,7 @@ from typing import Any
 import pytest
 
 from tests.display import on_a_virtual_display
-
-PROGRAMS = ("xvfb-run", "xdotool", "xprop")  # Debian: xvfb, xauth, xdotool, x11-utils
-PACKAGES = ("glfw", "imgui_bundle")
+from tests.tools import require
 
 BEFORE = """
 import json, subprocess, sys
@@ -121,10 +117,8 @@ def on_a_display():
     A scene is a program that opens ``window`` with ``show(...)``. Its generator ``play()`` goes on between frames, and
     what it puts into ``seen`` comes back. ``first`` is a shell command run on the display before.
     """
-    missing = [name for name in PROGRAMS if not shutil.which(name)]
-    missing += [name for name in PACKAGES if not importlib.util.find_spec(name)]
-    if missing:
-        pytest.skip(f"not on this machine: {', '.join(missing)}")
+    require("xvfb-run", "xauth", "xdotool", "xprop")
+    pytest.importorskip("imgui_bundle")
     return _play
 
 

@@ -258,6 +258,7 @@ actions = st.one_of(
 )
 
 
+@pytest.mark.slow
 @settings(max_examples=60)
 @given(st.lists(actions, max_size=12))
 def test_undo_gives_exactly_the_state_before_and_nothing_leaves_its_range(face, sequence):

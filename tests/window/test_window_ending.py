@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import os
 import re
-import shutil
 import subprocess
 import sys
 
 import pytest
 
 from tests.display import on_a_virtual_display
+from tests.tools import require
 
 pytestmark = [pytest.mark.gl, pytest.mark.slow]
 
@@ -26,7 +26,6 @@ echo code $?
 """
 
 
-@pytest.mark.skipif(not shutil.which("xvfb-run") or not shutil.which("xdotool"), reason="Debian: xvfb, xauth, xdotool")
 @pytest.mark.parametrize(
     ("command", "end", "code"),
     [
@@ -38,6 +37,7 @@ echo code $?
     ids=["hangup", "interrupted-twice", "display", "escape"],
 )
 def test_the_film_of_a_window_that_ends(tmp_path, command, end, code):
+    require("xvfb-run", "xauth", "xdotool")
     import av
 
     pytest.importorskip("glfw")

@@ -1,13 +1,13 @@
 """The window on a virtual display, where the machine has one."""
 
 import os
-import shutil
 import subprocess
 import sys
 
 import pytest
 
 from tests.display import on_a_virtual_display
+from tests.tools import require
 
 pytestmark = [pytest.mark.gl, pytest.mark.slow]
 
@@ -34,8 +34,8 @@ print(len(said), said[0])
 """
 
 
-@pytest.mark.skipif(not shutil.which("xvfb-run"), reason="no virtual display on this machine (Debian: xvfb, xauth)")
 def test_without_imgui_the_window_shows_a_face_that_changes_and_says_how_to_get_the_panel():
+    require("xvfb-run", "xauth")
     pytest.importorskip("glfw")
     command = [*on_a_virtual_display(), sys.executable, "-c", WITHOUT_PANEL]
     hidden = os.environ | {"DISPLAY": ""}

@@ -14,7 +14,7 @@ from agentface.errors import InvalidValueError
 _FINEST = 64
 
 
-class FineLips(NamedTuple):
+class LipMesh(NamedTuple):
     """A finer grid over the patch of :class:`agentface.deform.mouth.lips.LipTables`.
 
     Attributes:
@@ -35,7 +35,7 @@ class FineLips(NamedTuple):
     triangles: Indices
 
 
-def patch_mesh(tables: LipTables, per_cell: int) -> FineLips:
+def patch_mesh(tables: LipTables, per_cell: int) -> LipMesh:
     """Each cell of the patch cut into ``per_cell`` x ``per_cell``; raises InvalidValueError unless that is in 1..64."""
     if not 1 <= per_cell <= _FINEST:
         raise InvalidValueError("per_cell", f"a whole number in 1..{_FINEST}", per_cell)
@@ -52,7 +52,7 @@ def patch_mesh(tables: LipTables, per_cell: int) -> FineLips:
     along = (of_ring * tables.along[ring].astype(np.float64)).sum(1)
     across, at_along = _across(tables, at_column) + np.zeros(shape), along.clip(0, 1)[:, None] + np.zeros(shape)
     controls, weight = weights(moved_with(across, at_along), at_along)
-    return FineLips(
+    return LipMesh(
         *shape,
         patch=np.broadcast_to(patch, share.shape).reshape(-1, 16).astype(np.int32),
         share=share.reshape(-1, 16).astype(np.float32),
@@ -63,7 +63,7 @@ def patch_mesh(tables: LipTables, per_cell: int) -> FineLips:
     )
 
 
-def evaluate(tables: LipTables, fine: FineLips, points: Floats) -> tuple[Floats, Floats]:
+def evaluate(tables: LipTables, fine: LipMesh, points: Floats) -> tuple[Floats, Floats]:
     """Positions ``(F, 3)`` m and unit normals of the fine lips in the frame ``points (V + 144, 3)``, when it is done.
 
     x = sum of share (p - D) + D(u, v), with p the vertices of the patch, D the movement of the surface there and at

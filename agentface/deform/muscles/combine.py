@@ -14,7 +14,7 @@ import numpy as np
 import numpy.typing as npt
 
 from agentface.conventions import Doubles, Floats, check_vertices
-from agentface.deform.muscles.vector_muscle import pull
+from agentface.deform.muscles.vector_muscle import NOTHING, pull
 from agentface.errors import InvalidValueError, UnknownNameError
 from agentface.head.muscle_set import MuscleSet
 
@@ -22,8 +22,6 @@ Method: TypeAlias = Literal["parallel", "sequential", "summed"]
 METHODS: tuple[Method, ...] = ("parallel", "sequential", "summed")
 STEP = 0.2
 """The unit of contraction of ``parallel``, delta_c (Bui, Heylen, Nijholt, section 3.1)."""
-NOTHING = 1e-6
-"""A contraction as small as this is none: 0.6 in single precision is three steps of 0.2, not four."""
 
 Points: TypeAlias = npt.NDArray[np.floating[Any]]
 

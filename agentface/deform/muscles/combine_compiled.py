@@ -9,7 +9,7 @@ import numpy as np
 from agentface.conventions import Doubles, Floats, Indices
 from agentface.deform.lanes import LANES
 from agentface.deform.muscles.blocks import FIELDS, Blocks
-from agentface.deform.muscles.combine import NOTHING
+from agentface.deform.muscles.vector_muscle import NOTHING
 from agentface.deform.simd import (
     inverse_root,
     larger,

@@ -15,6 +15,9 @@ import numpy.typing as npt
 from agentface.conventions import Doubles
 from agentface.head.muscle_set import Falloff, MuscleSet
 
+NOTHING = 1e-6
+"""A contraction as small as this is none: 0.6 in single precision is three steps of 0.2, not four."""
+
 
 def pull(muscles: MuscleSet, muscle: int, points: npt.NDArray[np.floating[Any]], contraction: float) -> Doubles:
     """float64 ``(V, 3)`` m: what one muscle adds to all V vertices of a face, now at ``points``."""

@@ -11,7 +11,8 @@ import yaml
 
 from agentface.cache import cache_folder
 from agentface.config import load
-from agentface.head.build.head import METRES, Head, HeadTopology, build_head, hinge
+from agentface.head.build.head import METRES, Head, build_head, hinge
+from agentface.head.build.head_topology import HeadTopology
 from agentface.head.build.identity import Recipe, person
 from agentface.head.build.occlusion import ambient_light
 from agentface.head.build.parts import PartsFile

@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import numpy as np
 from pydantic import Field
 
 from agentface.config import Table
 from agentface.conventions import SIDES, Doubles
+from agentface.head.build.head_topology import HeadTopology
 from agentface.head.ring_names import LidRing
-
-if TYPE_CHECKING:
-    from agentface.head.build.head import HeadTopology
 
 _DECIMETRES = 0.01  # a millimetre
 _SUNK = {

@@ -12,7 +12,7 @@ from agentface.conventions import Doubles
 from agentface.head.build.fold import LidFold
 from agentface.head.build.partition import Loops, halves
 from agentface.head.build.source import BaseMesh
-from agentface.head.build.topology import Skin
+from agentface.head.build.topology import SkinTopology
 
 Weight = Annotated[float, Field(ge=0, le=1.5)]
 
@@ -80,7 +80,9 @@ def _split(value: float, noun: str) -> list[tuple[str, float]]:
     return [(f"average{noun}", 1 - far), (f"{'max' if value > 0.5 else 'min'}{noun}", far)]
 
 
-def close_lips(positions: Doubles, skin: Skin, loops: Loops, symmetric: Doubles, gap: float = 0.0015) -> Doubles:
+def close_lips(
+    positions: Doubles, skin: SkinTopology, loops: Loops, symmetric: Doubles, gap: float = 0.0015
+) -> Doubles:
     """Base vertices with the lips just touching: ``gap`` decimetres apart where they are nearest.
 
     The gap is measured along x between the lowest points of the upper lip and the highest of the lower; the

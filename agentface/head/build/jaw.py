@@ -2,18 +2,16 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import numpy as np
 from pydantic import Field
 
 from agentface.config import Table
 from agentface.conventions import Doubles, Indices
+from agentface.head.build.head_topology import HeadTopology
 from agentface.mesh.evening import evened
 from agentface.mesh.smoothstep import falloff
-
-if TYPE_CHECKING:
-    from agentface.head.build.head import HeadTopology
 
 _FINEST = 1e-4
 _INNER_RINGS = 3

@@ -2,16 +2,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
 from agentface.conventions import SIDES, Doubles
+from agentface.head.build.head_topology import HeadTopology
 from agentface.head.ring_names import LidRing
 from agentface.mesh.evening import evened
-
-if TYPE_CHECKING:
-    from agentface.head.build.head import HeadTopology
 
 _SHARPEST_DEG, _SHARPEST_LID_DEG = 45.0, 80.0
 _PASSES = 40

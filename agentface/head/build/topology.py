@@ -21,7 +21,7 @@ from agentface.mesh.thin import smallest_angle
 MOST_LEVELS = 2
 
 
-class Skin:
+class SkinTopology:
     """The skin's topology: ``triangles (T, 3)`` and ``mirror (V,)``, and the matrices that place its vertices."""
 
     def __init__(

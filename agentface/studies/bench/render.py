@@ -42,9 +42,9 @@ def run(model: HeadModel | None = None, rounds: int = 15, sizes: tuple[tuple[int
     renderer, deformer = _Renderer(model), GeometricDeformer(model)
     stages = _Stages(renderer.context)
     targets = {
-        (quality, size): Targets.make(renderer.context, size, samples)
+        (name, size): Targets.make(renderer.context, size, quality.samples)
         for size in sizes
-        for quality, samples in QUALITIES.items()
+        for name, quality in QUALITIES.items()
     }
     poses = cycle(_poses())
     for turn in range(rounds + 1):

@@ -13,7 +13,12 @@ FIGURES: dict[str, str] = {
     "jaw": "the jaw's opening, from closed to wide",
     "wrinkles": "Figures 11 and 12: shading normals at the wrinkles' feet, and wrinkles on mesh and forehead",
     "texture": "a picture worn as skin",
+    "muscles": "the muscles on the face, by name and action unit",
+    "regions": "the regions and sub-regions of the face",
+    "rings": "the rings of vertices round mouth and eyes",
+    "looks": "the faces in their looks, and the styles of hair",
     "expressions": "Figures 13 to 16: neutral, surprise, happiness, sadness",
+    "window": "the window, on a virtual display",
 }
 """The figures and what they show; each is a module of this package with ``figures(face) -> {file name: PNG}``."""
 

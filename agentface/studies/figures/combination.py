@@ -36,7 +36,7 @@ _PANEL, _FINER = 400, 3
 
 
 @dataclass(frozen=True, slots=True)
-class Panel:
+class Combination:
     """One picture: these muscles at full contraction, combined this way."""
 
     letter: str
@@ -46,17 +46,17 @@ class Panel:
     shows_muscles: bool = False
 
 
-def _three_ways(muscles: tuple[str, ...], letters: str) -> list[Panel]:
+def _three_ways(muscles: tuple[str, ...], letters: str) -> list[Combination]:
     ways: tuple[Method, ...] = ("parallel", "summed", "sequential")
-    return [Panel(letter, way, muscles, way) for letter, way in zip(letters, ways, strict=True)]
+    return [Combination(letter, way, muscles, way) for letter, way in zip(letters, ways, strict=True)]
 
 
 _A, _B, _C = MUSCLES
-FIGURES: dict[str, list[Panel]] = {
+FIGURES: dict[str, list[Combination]] = {
     "two-muscles": [
-        Panel("", "at rest", (_A, _B), shows_muscles=True),
-        Panel("a", "zygomaticus major", (_A,)),
-        Panel("b", "levator anguli oris", (_B,)),
+        Combination("", "at rest", (_A, _B), shows_muscles=True),
+        Combination("a", "zygomaticus major", (_A,)),
+        Combination("b", "levator anguli oris", (_B,)),
         *_three_ways((_A, _B), "cde"),
     ],
     "three-muscles": _three_ways((_A, _B, _C), "abc"),
@@ -79,7 +79,7 @@ def strong_muscles(face: str | Path) -> tuple[HeadModel, MuscleSet]:
     return model, replace(model.muscles, elasticity=elasticity)
 
 
-def deformed(model: HeadModel, muscles: MuscleSet, panel: Panel) -> tuple[Doubles, Outcome]:
+def deformed(model: HeadModel, muscles: MuscleSet, panel: Combination) -> tuple[Doubles, Outcome]:
     """The vertices ``(V, 3)`` m of a panel, and its numbers."""
     rest = model.vertices.astype(np.float64)
     if panel.shows_muscles:
@@ -96,7 +96,7 @@ def figures(face: str | Path) -> dict[str, bytes]:
     return {f"{name}.png": png(_sheet(model, muscles, panels), _palette()) for name, panels in FIGURES.items()}
 
 
-def _sheet(model: HeadModel, muscles: MuscleSet, panels: Sequence[Panel]) -> Image:
+def _sheet(model: HeadModel, muscles: MuscleSet, panels: Sequence[Combination]) -> Image:
     outcomes = [deformed(model, muscles, panel) for panel in panels]
     drawn = [_picture(model, muscles, panel, moved) for panel, (moved, _) in zip(panels, outcomes, strict=True)]
     titles = [f"({panel.letter}) {panel.title}" if panel.letter else panel.title for panel in panels]
@@ -104,14 +104,14 @@ def _sheet(model: HeadModel, muscles: MuscleSet, panels: Sequence[Panel]) -> Ima
     return sheet(list(zip(drawn, titles, notes, strict=True)), columns=3)
 
 
-def _note(panel: Panel, outcome: Outcome) -> str:
+def _note(panel: Combination, outcome: Outcome) -> str:
     if panel.shows_muscles:
         return "dots: where the muscles leave the bone"
     count = f"{outcome.folded} triangles folded over" if outcome.folded else "no triangle folded over"
     return f"moved up to {outcome.largest_mm:.1f} mm, {count}"
 
 
-def _picture(model: HeadModel, muscles: MuscleSet, panel: Panel, moved: Doubles) -> Image:
+def _picture(model: HeadModel, muscles: MuscleSet, panel: Combination, moved: Doubles) -> Image:
     from PIL import Image, ImageDraw
 
     centre = 0.5 * (model.landmarks["mouth_corner_l"] + model.landmarks["infraorbital_l"])

@@ -9,7 +9,7 @@ import numpy as np
 
 from agentface.conventions import Bytes, Doubles, Floats
 from agentface.deform.mouth import lips
-from agentface.deform.mouth.lip_mesh import FineLips, evaluate, patch_mesh
+from agentface.deform.mouth.lip_mesh import LipMesh, evaluate, patch_mesh
 from agentface.deform.mouth.lip_surface import COLUMNS, ROWS
 from agentface.deform.mouth.lips import LipTables
 from agentface.deform.pipeline import GeometricDeformer
@@ -65,7 +65,7 @@ class _Stage:
     def __init__(self, model: HeadModel) -> None:
         self._model = model
         self._tables: LipTables = lips.prepare(model)
-        self._fine: FineLips = patch_mesh(self._tables, _PER_CELL)
+        self._fine: LipMesh = patch_mesh(self._tables, _PER_CELL)
         self._deformer, self._renderer = GeometricDeformer(model, compiled=False), Renderer(model)
         marks = model.landmarks
         self._unit = marks.eye_separation

@@ -6,7 +6,7 @@ from typing import Any
 
 from agentface.head.look import Look
 from agentface.view.gl.context import compile_program
-from agentface.view.gl.quality import TIERS
+from agentface.view.gl.quality import QUALITIES
 
 FRAME_BINDING = 0
 _SLOTS = {
@@ -42,11 +42,13 @@ class Programs:
         self._context = context
         self._programs = {name: self._compile(*shaders) for name, shaders in _SHADERS.items()}
         self.depth = self._compile("depth", None)
-        for tier in TIERS.values():
+        for quality in QUALITIES.values():
             worn = ("TEXTURED",) if textured else ()
-            self._programs[tier.skin] = self._compile(tier.skin, tier.skin, worn)
-            self._programs[f"{tier.skin}-wrinkled"] = (
-                self._compile(tier.skin, tier.skin, (*worn, "WRINKLED")) if tier.fine else self._programs[tier.skin]
+            self._programs[quality.skin] = self._compile(quality.skin, quality.skin, worn)
+            self._programs[f"{quality.skin}-wrinkled"] = (
+                self._compile(quality.skin, quality.skin, (*worn, "WRINKLED"))
+                if quality.fine
+                else self._programs[quality.skin]
             )
 
     def __getitem__(self, name: str) -> Any:

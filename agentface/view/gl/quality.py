@@ -8,7 +8,7 @@ from agentface.errors import UnknownNameError
 
 
 @dataclass(frozen=True, slots=True)
-class Tier:
+class Quality:
     """What a quality costs.
 
     Attributes:
@@ -22,16 +22,14 @@ class Tier:
     fine: bool
 
 
-TIERS = {"fast": Tier(0, "skin_fast", fine=False), "portrait": Tier(4, "skin", fine=True)}
-QUALITIES: dict[str, int] = {name: tier.samples for name, tier in TIERS.items()}
-"""Name of a quality: samples a pixel (0: one, not resolved)."""
+QUALITIES = {"fast": Quality(0, "skin_fast", fine=False), "portrait": Quality(4, "skin", fine=True)}
 
 
-def tier_named(quality: str) -> Tier:
-    """The tier ``quality``; raises UnknownNameError."""
-    if quality not in TIERS:
-        raise UnknownNameError("quality", quality, tuple(TIERS))
-    return TIERS[quality]
+def quality_named(name: str) -> Quality:
+    """The quality ``name``; raises UnknownNameError."""
+    if name not in QUALITIES:
+        raise UnknownNameError("quality", name, tuple(QUALITIES))
+    return QUALITIES[name]
 
 
 _WITHOUT_GPU = ("llvmpipe", "softpipe", "software", "swiftshader", "swrast", "gdi generic", "basic render")

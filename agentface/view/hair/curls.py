@@ -6,15 +6,15 @@ import numpy as np
 
 from agentface.head.look import HairLook
 from agentface.head.model import HeadModel
-from agentface.view.hair.growth import Growth, paints
 from agentface.view.hair.hairline import HairRoots
 from agentface.view.hair.ribbons import unit_rows
+from agentface.view.hair.strand_set import StrandSet, paints
 from agentface.view.hair.styles import REFERENCE_EYES, Amount, Style, knot_of
 
 _BUN_SHARE = 0.35
 
 
-def crop(roots: HairRoots, style: Style, amount: Amount, look: HairLook, rng: np.random.Generator) -> Growth:
+def crop(roots: HairRoots, style: Style, amount: Amount, look: HairLook, rng: np.random.Generator) -> StrandSet:
     """Small coils that stand up from the scalp, wider with ``look.curl``."""
     count, t = len(roots), np.linspace(0.0, 1.0, amount.points)
     layer = rng.random(count)
@@ -33,10 +33,10 @@ def crop(roots: HairRoots, style: Style, amount: Amount, look: HairLook, rng: np
     paint = paints(look, np.full(count, 1.7), 1.0 * np.clip(roots.depth / 0.012, 0.25, 1.0), rng, 0.6)
     cover = (0.25 + 0.75 * layer[:, None]) * (0.4 + 0.6 * t)
     radii = amount.radius * (0.7 + 0.6 * rng.random(count)) * np.clip(short + 0.2, 0, 1)
-    return Growth(points, radii, paint, cover, layer, np.ones(count))
+    return StrandSet(points, radii, paint, cover, layer, np.ones(count))
 
 
-def bun(model: HeadModel, amount: Amount, pieces: int, look: HairLook, rng: np.random.Generator) -> Growth:
+def bun(model: HeadModel, amount: Amount, pieces: int, look: HairLook, rng: np.random.Generator) -> StrandSet:
     """Locks of ``pieces`` pieces wound round a ball where tied hair ends."""
     count, scale = round(_BUN_SHARE * amount.locks), model.landmarks.eye_separation / REFERENCE_EYES
     t = np.linspace(0.0, 1.0, pieces + 1)
@@ -55,4 +55,4 @@ def bun(model: HeadModel, amount: Amount, pieces: int, look: HairLook, rng: np.r
     paint = paints(look, np.ones(count), np.full(count, 0.95), rng, 0.7)
     cover = np.repeat((0.35 + 0.65 * layer)[:, None], pieces + 1, axis=1)
     radii = amount.width * (0.7 + 0.6 * rng.random(count))
-    return Growth(points, radii, paint, cover, layer, np.zeros(count))
+    return StrandSet(points, radii, paint, cover, layer, np.zeros(count))

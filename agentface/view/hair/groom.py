@@ -8,10 +8,10 @@ from agentface.conventions import Doubles, Floats
 from agentface.head.look import HairLook
 from agentface.head.model import HeadModel
 from agentface.view.hair.curls import bun, crop
-from agentface.view.hair.growth import Growth, paints
 from agentface.view.hair.hairline import Hairline, HairRoots
 from agentface.view.hair.hull import Hull
 from agentface.view.hair.ribbons import unit_rows
+from agentface.view.hair.strand_set import StrandSet, paints
 from agentface.view.hair.strands import Strands
 from agentface.view.hair.styles import (
     GUIDE_STEP,
@@ -40,14 +40,14 @@ _JOIN = 0.032
 """Metres of single hairs that do not."""
 
 
-def grow(model: HeadModel, normals: Floats, look: HairLook, quality: str, rng: np.random.Generator) -> Strands:
+def groom(model: HeadModel, normals: Floats, look: HairLook, quality: str, rng: np.random.Generator) -> Strands:
     """The strands of ``look.style``, any but ``none``, for a quality; the same generator gives the same strands."""
     style = STYLES[look.style]
     amount = style.amounts[quality]
     line = Hairline(model, look.hairline)
     if look.style == "cropped":
         roots = HairRoots.drawn(model, normals, line, amount.hairs, rng)
-        return crop(roots, style, amount, look, rng).strands(model)
+        return crop(roots, style, amount, look, rng).in_order(model)
     hull = Hull(model, ears=style.over_ears)
     # the guides are the same for every quality, so that they show the same hair
     starts = HairRoots.drawn(model, normals, line, _GUIDES, np.random.default_rng(_GUIDE_SEED))
@@ -55,12 +55,12 @@ def grow(model: HeadModel, normals: Floats, look: HairLook, quality: str, rng: n
     guides = guides_from(starts, flow_of(model, look), hull, style, thickness)
     locks = _Locks(starts, guides, lengths_of(model, look, guides), hull, style, thickness, parting_of(model, look))
     roots = HairRoots.drawn(model, normals, line, amount.locks, rng, behind=_LOCKS_BEHIND)
-    growth = locks.grown(roots, amount, look, rng)
+    strands = locks.grown(roots, amount, look, rng)
     roots = HairRoots.drawn(model, normals, line, amount.hairs, rng, elsewhere=_HAIRS_ELSEWHERE)
-    growth = growth.joined(locks.grown(roots, amount, look, rng, single=True))
+    strands = strands.joined(locks.grown(roots, amount, look, rng, single=True))
     if look.style == "bun":
-        growth = growth.joined(bun(model, amount, growth.points.shape[1] - 1, look, rng))
-    return growth.strands(model)
+        strands = strands.joined(bun(model, amount, strands.points.shape[1] - 1, look, rng))
+    return strands.in_order(model)
 
 
 def guides_from(starts: HairRoots, flow: Flow, hull: Hull, style: Style, thickness: float) -> Doubles:
@@ -95,7 +95,7 @@ class _Locks:
 
     def grown(
         self, roots: HairRoots, amount: Amount, look: HairLook, rng: np.random.Generator, *, single: bool = False
-    ) -> Growth:
+    ) -> StrandSet:
         """The locks of ``roots``, or ``single`` hairs outside of the locks."""
         count = len(roots)
         mine = self._nearest(roots.places)
@@ -122,7 +122,7 @@ class _Locks:
         cover = (0.65 + 0.35 * layer[:, None] ** 0.7) * (0.72 + 0.28 * np.clip(along / 0.015, 0, 1))
         fine = fine if single else fine * np.clip(along[:, -1] / _FULL, 0.7, 1.0)
         radii = (amount.radius if single else amount.width) * fine * (0.7 + 0.6 * rng.random(count))
-        return Growth(points, radii, paint, np.clip(cover, 0, 1), layer, np.full(count, float(single)))
+        return StrandSet(points, radii, paint, np.clip(cover, 0, 1), layer, np.full(count, float(single)))
 
     def _nearest(self, places: Doubles) -> np.typing.NDArray[np.intp]:
         """The nearest guide on the same side of the parting."""

@@ -13,9 +13,9 @@ from agentface.head.look import HairLook
 from agentface.head.model import HeadModel
 from agentface.view.camera import Camera
 from agentface.view.gl.programs import Programs
-from agentface.view.gl.quality import tier_named
+from agentface.view.gl.quality import quality_named
 from agentface.view.hair.cap import Cap, scalp_cap
-from agentface.view.hair.groom import grow
+from agentface.view.hair.groom import groom
 from agentface.view.hair.hairline import Hairline
 from agentface.view.hair.hull import Hull
 from agentface.view.hair.sheets import Sheet, SheetArray, edge_shade, flyaways, parting_line, sheets
@@ -64,7 +64,7 @@ class HeadHair:
         self._program["narrowest"].value = _NARROWEST[quality]
         self._program["streaks"].value = _STREAKS[quality]
         if self._sheets is not None:
-            self._sheets.draw(eye, fine=tier_named(quality).fine)
+            self._sheets.draw(eye, fine=quality_named(quality).fine)
         self._strands_for(quality).draw_solid(eye)
         self._context.enable(self._context.CULL_FACE)
         self._cap.draw_solid()
@@ -101,5 +101,5 @@ class HeadHair:
     def _grow_strands(self, quality: str) -> Strands:
         model, look, rng = self._model, self._look, np.random.default_rng(_SEED)
         if self._grown:
-            return flyaways(self._grown, STYLES[look.style].amounts[quality], look, rng).strands(model)
-        return grow(model, model.normals, look, quality, rng)
+            return flyaways(self._grown, STYLES[look.style].amounts[quality], look, rng).in_order(model)
+        return groom(model, model.normals, look, quality, rng)

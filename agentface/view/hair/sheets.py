@@ -12,10 +12,10 @@ from agentface.head.look import HairLook
 from agentface.head.model import HeadModel
 from agentface.mesh.smoothstep import smoothstep
 from agentface.view.hair.groom import smoothed, waves
-from agentface.view.hair.growth import Growth, paints
 from agentface.view.hair.hairline import Hairline
 from agentface.view.hair.hull import Hull
 from agentface.view.hair.ribbons import unit_rows
+from agentface.view.hair.strand_set import StrandSet, paints
 from agentface.view.hair.strands import middle_of, sector_of, skin_round
 from agentface.view.hair.styles import REFERENCE_EYES, STYLES, Amount, parting_of, whorl_of
 from agentface.view.hair.visible import before_skin
@@ -180,7 +180,7 @@ def _resampled(paths: Doubles, t: Doubles, share: Doubles) -> tuple[Doubles, Dou
     return points, along
 
 
-def flyaways(grown: list[Sheet], amount: Amount, look: HairLook, rng: np.random.Generator) -> Growth:
+def flyaways(grown: list[Sheet], amount: Amount, look: HairLook, rng: np.random.Generator) -> StrandSet:
     """Single hairs that leave the outer sheets: most of them frame the face."""
     outer = _outer(grown)
     count, t = amount.hairs, np.linspace(0.0, 1.0, amount.points)
@@ -196,7 +196,7 @@ def flyaways(grown: list[Sheet], amount: Amount, look: HairLook, rng: np.random.
     drift = rng.normal(0.0, 0.5 * _AWAY, (count, 1, 3)) * (t**2)[:, None]
     points = points + off[..., None] * away + drift
     paint = paints(look, np.full(count, 1.3), np.full(count, 0.7), rng, 0.4)
-    return Growth(points, amount.radius * rng.uniform(0.6, 1.2, count), paint, np.ones((count, len(t))),
+    return StrandSet(points, amount.radius * rng.uniform(0.6, 1.2, count), paint, np.ones((count, len(t))),
                   np.ones(count), np.ones(count))  # fmt: skip
 
 

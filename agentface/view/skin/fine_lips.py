@@ -1,4 +1,7 @@
-"""The lips of a portrait: the skin round the mouth cut finely, on the lips' B-spline surface."""
+"""The lips of a portrait: the skin round the mouth cut finely, on the lips' B-spline surface.
+
+A fine vertex is an edge with both ends at itself, so the shaders of the refined skin draw it as they are.
+"""
 
 from __future__ import annotations
 

@@ -14,6 +14,8 @@ from agentface.studies.bench.timing import interleave
 from tests.deform.rig import make_rig
 from tests.heads import deformer_of, head_model
 
+pytestmark = pytest.mark.slow
+
 
 def test_the_report_has_its_keys_and_positive_numbers():
     report = deform.run(make_rig(), rounds=2)

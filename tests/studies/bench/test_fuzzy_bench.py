@@ -2,7 +2,11 @@ from __future__ import annotations
 
 import json
 
+import pytest
+
 from agentface.studies.bench.fuzzy import run
+
+pytestmark = pytest.mark.slow
 
 
 def test_the_benchmark_compares_equal_results():

@@ -5,7 +5,7 @@ import pytest
 from agentface.studies.bench.render import STAGES, run
 from agentface.view.gl.quality import QUALITIES
 
-pytestmark = pytest.mark.gl
+pytestmark = [pytest.mark.gl, pytest.mark.slow]
 
 
 @pytest.fixture(scope="module")

@@ -9,6 +9,8 @@ from agentface.emotion.state import EMOTIONS
 from agentface.studies.bench.texture import _axes, _frames, _share, run
 from agentface.view.gl.quality import QUALITIES
 
+pytestmark = pytest.mark.slow
+
 
 @given(st.floats(0.3, 3.0), st.floats(0.3, 3.0), st.floats(0.0, 6.3))
 def test_the_axes_are_what_a_plane_was_stretched_by(wide, high, turn):

@@ -73,6 +73,7 @@ def test_a_document_without_a_place_is_left_alone(tmp_path):
     assert "b.md" in call("onyx", "--table", "-o", tmp_path / "b.md", code=1).stderr
 
 
+@pytest.mark.slow
 def test_a_fit_is_written_to_the_face_and_printed(face, quick):
     result = call(face, "--starts", 3, "--seed", 5)
     assert quick == [(str(face), 3, 5)]
@@ -82,6 +83,7 @@ def test_a_fit_is_written_to_the_face_and_printed(face, quick):
     assert "expected" in result.stderr  # the anatomist's muscles alone miss the limits, and it is said
 
 
+@pytest.mark.slow
 def test_a_dry_run_writes_nothing(face, quick):
     before = (face / "muscles.yaml").read_bytes()
     content = json.loads(call(face, "--dry-run", "--json", "-").stdout)
@@ -92,6 +94,7 @@ def test_a_dry_run_writes_nothing(face, quick):
     assert (face / "muscles.yaml").read_bytes() == before
 
 
+@pytest.mark.slow
 def test_a_face_without_muscles_yet_gets_them(face, quick):
     (face / "muscles.yaml").unlink()
     call(face)

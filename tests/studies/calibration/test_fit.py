@@ -65,6 +65,7 @@ def fit(model, anatomy):
     return fitter, values, cost, said
 
 
+@pytest.mark.slow
 def test_the_fit_finds_a_muscle_that_does_what_the_known_one_does(fit, model, anatomy):
     fitter, values, cost, said = fit
     first = 0.5 * (fitter.residuals(fitter.start()) ** 2).sum()
@@ -104,6 +105,7 @@ def test_the_rows_of_the_fit_are_the_muscles_of_the_file(fit, model, anatomy):
         np.testing.assert_allclose(fitted[7:], expected, atol=1e-5)
 
 
+@pytest.mark.slow
 def test_the_fit_is_the_same_for_the_same_seed(model, anatomy):
     fitter = Fitter(model, anatomy, groups([UNIT])[0])
     one, two = (fitter.solve(2, np.random.default_rng(4), lambda _: None) for _ in range(2))

@@ -8,7 +8,7 @@ from PIL import Image
 
 from agentface.studies.figures import lips
 
-pytestmark = pytest.mark.gl
+pytestmark = [pytest.mark.gl, pytest.mark.slow]
 
 
 def test_the_figures_show_the_surface_and_its_contractions(monkeypatch):

@@ -27,6 +27,7 @@ def test_the_command_draws_the_emotions_it_is_told(tmp_path):
     assert all(np.abs(one - other).max() > 20 for i, one in enumerate(cells) for other in cells[:i])
 
 
+@pytest.mark.slow
 def test_a_pose_mixes_emotions_and_muscles(tmp_path):
     both, muscle = tmp_path / "both.png", tmp_path / "muscle.png"
     call("--pose", "wow: surprise=0.5, jaw_open=0.9", "--size", "64x72", "-o", both)
@@ -60,6 +61,7 @@ def test_panels_of_a_sheet_lie_where_they_belong_and_keep_their_pixels():
     assert png(image).startswith(b"\x89PNG")
 
 
+@pytest.mark.slow
 def test_an_emotion_on_a_sheet_is_the_one_that_the_face_shows(tmp_path):
     """The sides of a face differ in what they make of an emotion, here as elsewhere; a muscle by name is as asked."""
     path, face = tmp_path / "sheet.png", Face()

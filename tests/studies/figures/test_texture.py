@@ -10,7 +10,7 @@ from agentface.studies.figures import FIGURES
 from agentface.studies.figures.texture import figures
 from agentface.view.contact_sheet import CAPTION, GAP
 
-pytestmark = pytest.mark.gl
+pytestmark = [pytest.mark.gl, pytest.mark.slow]
 
 
 def test_the_paint_is_on_the_template_and_on_both_cheeks_of_every_face():

@@ -51,6 +51,7 @@ def test_the_strips_rows_lie_on_the_feet():
     assert with_[touched][:, 2].min() < 0.9 * without[touched][:, 2].min()
 
 
+@pytest.mark.slow
 @pytest.mark.gl
 def test_the_figures_show_the_correction_and_the_forehead():
     drawn = figures("amber")

@@ -2,7 +2,7 @@ from __future__ import annotations
 
 import pytest
 
-from agentface.view.gl.quality import TIERS, suited_quality
+from agentface.view.gl.quality import QUALITIES, suited_quality
 
 
 @pytest.mark.parametrize(
@@ -18,4 +18,4 @@ from agentface.view.gl.quality import TIERS, suited_quality
 )
 def test_a_window_draws_portraits_where_there_is_a_gpu(driver, quality):
     assert suited_quality(driver) == quality
-    assert quality in TIERS
+    assert quality in QUALITIES

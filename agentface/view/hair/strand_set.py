@@ -1,4 +1,4 @@
-"""What grows: strands before they are put in the order in which they are drawn."""
+"""Strands before they are put in the order in which they are drawn, and their colours."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ _GREY = 0.085
 
 
 @dataclass(frozen=True, slots=True)
-class Growth:
+class StrandSet:
     """``points (N, P, 3)``, ``radii (N,)``, ``paint (N, 4)`` and ``cover (N, P)`` as in :class:`Strands`.
 
     ``layer (N,)`` is 0 next to the scalp and 1 outside; ``faint (N,)`` 1 for strands that blend, else 0.
@@ -28,11 +28,11 @@ class Growth:
     layer: Doubles
     faint: Doubles
 
-    def joined(self, other: Growth) -> Growth:
+    def joined(self, other: StrandSet) -> StrandSet:
         """Both."""
-        return Growth(*(np.concatenate([getattr(self, f.name), getattr(other, f.name)]) for f in fields(self)))
+        return StrandSet(*(np.concatenate([getattr(self, f.name), getattr(other, f.name)]) for f in fields(self)))
 
-    def strands(self, model: HeadModel) -> Strands:
+    def in_order(self, model: HeadModel) -> Strands:
         """Those that hide others, then those that blend, the outermost last."""
         order = np.argsort(np.where(self.faint > 0, 2 + self.layer, 1 - self.layer), kind="stable")
         points, radii, paint, cover = (
