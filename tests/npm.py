@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from agentface.resources import cache_folder
+from agentface.cache import cache_folder
 from tests import tools
 
 
@@ -18,7 +18,9 @@ def node_modules(name: str, version: str) -> Path:
 
     Where it cannot be had, the test is skipped, which AGENTFACE_REQUIRE_TOOLS=1 makes a failure.
     """
-    folder = cache_folder() / "tests" / f"{name}-{version}"
+    cache = cache_folder()
+    assert cache is not None, "tests run in a home folder"
+    folder = cache / "tests" / f"{name}-{version}"
     modules = folder / "node_modules"
     if not (modules / name / "package.json").is_file():
         tools.require("npm")

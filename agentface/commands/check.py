@@ -33,7 +33,7 @@ def check(*, files: tuple[Path, ...], face: str | None, deformer: str) -> None:
     places = [*files, *([face_folder(face)] if face else [])] or _shipped()
     faults: list[Fault] = []
     for place in places:
-        found = list(dict.fromkeys(_faults(place)))
+        found = list(dict.fromkeys(faults_of(place)))
         faults += found
         plural = "" if len(found) == 1 else "s"
         click.echo(f"{place}: {len(found)} fault{plural}" if found else f"{place}: good")
@@ -49,7 +49,8 @@ def _shipped() -> list[Path]:
     return [data_folder("rules"), *(face_folder(name) for name in face_names())]
 
 
-def _faults(place: Path) -> list[Fault]:
+def faults_of(place: Path) -> list[Fault]:
+    """Every fault of a file, of a folder of rules, or of a face's folder."""
     if not place.exists():
         return [Fault(place, None, "", "a file or a folder", "nothing")]
     if not place.is_dir():
@@ -61,22 +62,22 @@ def _faults(place: Path) -> list[Fault]:
         return [Fault(place, None, "", "a folder with rules or a face", "neither")]
     looks = sorted((place / "looks").glob("*.yaml"))
     found = [fault for path in [*(place / name for name in _face_readers()), *looks] for fault in _faults_of_file(path)]
-    return found or _faults_of(lambda: _whole_face(place))
+    return found or _faults_in(lambda: _whole_face(place))
 
 
 def _faults_of_file(path: Path) -> list[Fault]:
     from agentface.io.emotionml import load_emotionml
 
     if path.suffix.lower() in (".xml", ".emotionml"):
-        return _faults_of(lambda: load_emotionml(path))
+        return _faults_in(lambda: load_emotionml(path))
     readers = _rule_readers() | _face_readers()
     kind = "look.yaml" if path.parent.name == "looks" else path.name
     if kind not in readers:
         return [Fault(path, None, "", f"one of {', '.join(readers)}, or EmotionML in .xml", path.name)]
-    return _faults_of(lambda: readers[kind](path))
+    return _faults_in(lambda: readers[kind](path))
 
 
-def _faults_of(read: Callable[[], object]) -> list[Fault]:
+def _faults_in(read: Callable[[], object]) -> list[Fault]:
     try:
         read()
     except DataError as error:

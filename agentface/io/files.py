@@ -27,6 +27,14 @@ def check_writable(path: Path) -> None:
         raise OutputError(f"{path}: expected a folder that can be written to, got {folder}; choose another one")
 
 
+def make_folder(folder: Path) -> None:
+    """Make a folder, and those above it, where there is none; raises OutputError."""
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise OutputError(cannot_write(folder, error)) from error
+
+
 def cannot_write(path: Path, error: Exception) -> str:
     """The message of an OutputError for what the system, or a library, said of ``path``."""
     number, reason = getattr(error, "errno", None), getattr(error, "strerror", None) or error
