@@ -358,7 +358,7 @@ def test_a_worn_picture_shows_where_its_coordinates_say(tmp_path, quality):
     for look in (load_look(model), read_look(look_with(tmp_path / "worn", tmp_path / "half.png"))):
         renderer = Renderer(model, look)
         pictures.append(renderer.render(geometry, (160, 120), "front", quality).astype(int))
-        renderer.context.release()
+        renderer.close()
     plain, painted = pictures
     right, left = np.s_[62:70, 60:68], np.s_[62:70, 92:100]  # cheeks
     assert (painted[right][..., 2] > painted[right][..., 0] + 40).all()

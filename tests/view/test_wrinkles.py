@@ -21,7 +21,7 @@ SIZE = (320, 240)
 def renderer(request):
     renderer = Renderer(head_model(request.param))
     yield renderer
-    renderer.context.release()
+    renderer.close()
 
 
 def at_rest(model, **levels):
