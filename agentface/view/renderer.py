@@ -190,9 +190,9 @@ class Renderer:
 
         context, tier = self.context, tier_named(quality)
         seen_from = named_view(self.model, camera) if isinstance(camera, str) else camera
+        self.upload_skin(geometry)
         self._frame.write(pack_frame(seen_from, targets.size, geometry.head, self.look.lights))
         self._frame.bind_to_uniform_block(FRAME_BINDING)
-        self.upload_skin(geometry)
         self._fields.texture.use(0)
         self._noise.use(1)
         self._wrinkles.texture.use(3)
@@ -239,11 +239,13 @@ class Renderer:
 
     def upload_skin(self, geometry: FaceGeometry) -> None:
         """Hand the skin of the frame to the GPU; ``draw`` does it itself."""
-        self._fields.update(geometry)
+        with self._ownership.current():
+            self._fields.update(geometry)
 
     def upload_wrinkles(self, geometry: FaceGeometry) -> None:
         """Hand its wrinkles to the GPU; ``draw`` does it itself."""
-        self._wrinkled = self._wrinkles.update(geometry.wrinkle_levels)
+        with self._ownership.current():
+            self._wrinkled = self._wrinkles.update(geometry.wrinkle_levels)
 
     def _begin(self, targets: Targets) -> None:
         """Let a software driver begin with what it has been told: it waits until another picture is drawn into."""
@@ -292,7 +294,7 @@ class Renderer:
 
     def _lit_at_rest(self, normals: Floats) -> Floats:
         model, lights = self.model, self.look.lights
-        geometry = FaceGeometry.at_rest(model.vertices, normals)
+        geometry = FaceGeometry.at_rest(model.vertices, normals, len(model.trains))
         self._frame.write(pack_frame(named_view(model, "front"), (1, 1), geometry.head, lights))
         self._frame.bind_to_uniform_block(FRAME_BINDING)
         self._fields.update(geometry)

@@ -21,7 +21,6 @@ from agentface.deform.geometry import FaceGeometry
 from agentface.errors import DataError
 from agentface.head.look import load_look, read_look
 from agentface.head.skin_image import bled, read_texture, skin_image
-from agentface.mesh.normals import vertex_normals
 from agentface.resources import face_folder
 from agentface.view.renderer import Renderer
 from agentface.view.skin.template import skin_template
@@ -353,7 +352,7 @@ def test_a_worn_picture_shows_where_its_coordinates_say(tmp_path, quality):
     half = np.zeros((64, 64, 4), np.uint8)
     half[:, :32] = (20, 40, 200, 255)  # the person's right
     Image.fromarray(half).save(tmp_path / "half.png")
-    geometry = FaceGeometry.at_rest(model.vertices, vertex_normals(model.vertices, model.triangles))
+    geometry = FaceGeometry.at_rest(model.vertices, model.normals, len(model.trains))
     pictures = []
     for look in (load_look(model), read_look(look_with(tmp_path / "worn", tmp_path / "half.png"))):
         renderer = Renderer(model, look)

@@ -44,7 +44,7 @@ def program(text: str, *before: str, **environment: str) -> str:
 
 
 def at_rest(model):
-    return FaceGeometry.at_rest(model.vertices, model.normals)
+    return FaceGeometry.at_rest(model.vertices, model.normals, len(model.trains))
 
 
 @pytest.fixture

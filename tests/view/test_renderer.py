@@ -19,7 +19,7 @@ def shown(model, **shapes):
     vertices = model.vertices.copy()
     for name, weight in shapes.items():
         vertices += np.float32(weight) * model.shapes[name].dense(len(vertices))
-    return FaceGeometry.at_rest(vertices, vertex_normals(vertices, model.triangles))
+    return FaceGeometry.at_rest(vertices, vertex_normals(vertices, model.triangles), len(model.trains))
 
 
 @pytest.fixture(scope="module", params=["amber", "onyx"])
@@ -142,10 +142,13 @@ def test_wrong_names_and_meshes_are_refused(renderer):
         renderer.render(shown(renderer.model), SIZE, "back")
     with pytest.raises(UnknownNameError, match="portrait"):
         renderer.render(shown(renderer.model), SIZE, quality="best")
-    geometry = shown(renderer.model)
-    geometry.vertices = geometry.vertices[:-1]
-    with pytest.raises(InvalidValueError, match=r"geometry\.vertices"):
-        renderer.render(geometry, SIZE)
+    for name in ("vertices", "smooth_normals", "wrinkles", "wrinkle_levels", "eye_rotations", "jaw", "head"):
+        geometry = shown(renderer.model)
+        array = getattr(geometry, name)
+        for wrong in (array[:-1], array[None], array[:0]):
+            setattr(geometry, name, wrong)
+            with pytest.raises(InvalidValueError, match=rf"geometry\.{name}: expected an array of shape"):
+                renderer.render(geometry, SIZE)
 
 
 def test_odd_and_small_sizes(renderer):
