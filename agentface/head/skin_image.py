@@ -55,11 +55,12 @@ def skin_texture(context: Any, look: Look) -> Any | None:
     return texture
 
 
-def read_texture(path: Path, largest: int = _SIDE) -> Bytes:
+def read_texture(path: str | Path, largest: int = _SIDE) -> Bytes:
     """The picture at ``path`` as read-only ``(H, W, 4)`` uint8 with straight alpha, made smaller to fit ``largest``.
 
     Raises DataError for no file, no PNG, JPEG or WebP of 8 bits a channel, a damaged or a too large one.
     """
+    path = Path(path)
     try:
         status = path.stat()
     except (OSError, ValueError) as error:

@@ -59,8 +59,9 @@ class MeshArrays:
     extras: dict[str, Any] = field(default_factory=dict)
 
 
-def read_glb(path: Path) -> dict[str, MeshArrays]:
+def read_glb(path: str | Path) -> dict[str, MeshArrays]:
     """The meshes of a GLB file by name; raises DataError when it is unreadable."""
+    path = Path(path)
     try:
         if path.stat().st_size > _LARGEST:
             raise DataError([Fault(path, None, "", f"at most {_LARGEST} bytes", f"{path.stat().st_size}")])
@@ -136,8 +137,9 @@ def texture_coordinates(mesh: MeshArrays) -> Floats | None:
     return found.astype(np.float32) / np.float32(np.iinfo(found.dtype).max)
 
 
-def write_glb(path: Path, meshes: Mapping[str, MeshArrays], copyright_line: str) -> None:
+def write_glb(path: str | Path, meshes: Mapping[str, MeshArrays], copyright_line: str) -> None:
     """Write meshes as one GLB file; raises what :func:`encode_glb` raises, and OSError."""
+    path = Path(path)
     path.write_bytes(encode_glb(meshes, copyright_line))
 
 

@@ -43,7 +43,7 @@ class Recipe(Table):
     asymmetry: dict[str, Weight] = {}
 
 
-def read_recipe(path: Path, mesh: BaseMesh) -> Recipe:
+def read_recipe(path: str | Path, mesh: BaseMesh) -> Recipe:
     """The recipe at ``path``; raises DataError with every fault, also of names that the mesh does not have."""
     document = Document(path)
     recipe = document.collect(Recipe)

