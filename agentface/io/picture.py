@@ -32,9 +32,9 @@ def write_picture(path: str | Path, image: Bytes) -> None:
 
 def encode(image: Bytes, path: str | Path) -> bytes:
     """The file of ``image`` in the format that the ending of ``path`` says; raises OutputError for another ending."""
-    path = Path(path)
     from PIL import Image
 
+    path = Path(path)
     check_picture_name(path, alpha=image.shape[-1] == 4)
     buffer = BytesIO()
     # Level 4 takes half the time of the usual 6 for a file a tenth larger.

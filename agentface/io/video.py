@@ -166,10 +166,11 @@ def check_video_name(path: str | Path) -> None:
         )
 
 
-def keep_whole_fragments(path: Path) -> float:
+def keep_whole_fragments(path: str | Path) -> float:
     """Cut a film behind its last whole fragment; its length in seconds. Without any, the file is removed: 0."""
     import av
 
+    path = Path(path)
     with path.open("r+b") as file:
         file.truncate(whole_fragments(file))
         empty = file.tell() == 0
