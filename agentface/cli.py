@@ -11,7 +11,20 @@ import click
 from agentface.commands.streams import output_told, tell, watch_output
 from agentface.errors import AgentFaceError, DataError
 
-COMMANDS = ("render", "sheet", "serve", "show", "play", "explain", "check", "unwrap", "bench", "calibrate", "figures")
+COMMANDS = (
+    "render",
+    "sheet",
+    "serve",
+    "show",
+    "play",
+    "explain",
+    "check",
+    "unwrap",
+    "build",
+    "bench",
+    "calibrate",
+    "figures",
+)
 
 
 class _Commands(click.Group):

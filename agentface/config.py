@@ -32,7 +32,8 @@ Model = TypeVar("Model", bound=BaseModel)
 class Document:
     """A YAML file and the line of each of its values."""
 
-    def __init__(self, path: Path) -> None:
+    def __init__(self, path: str | Path) -> None:
+        path = Path(path)
         self.path = path
         self.data, self._lines, self._faults = _read(path)
 
@@ -72,7 +73,7 @@ class Document:
             return None
 
 
-def load(path: Path, model: type[Model]) -> Model:
+def load(path: str | Path, model: type[Model]) -> Model:
     """The file at ``path`` as ``model``; raises DataError with every fault found."""
     return Document(path).parse(model)
 

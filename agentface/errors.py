@@ -9,6 +9,7 @@ from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from difflib import get_close_matches
 from pathlib import Path
+from typing import NamedTuple
 
 
 class AgentFaceError(Exception):
@@ -48,6 +49,9 @@ class DataError(AgentFaceError):
         self.faults = tuple(faults)
         super().__init__("\n".join(str(fault) for fault in self.faults))
 
+    def __reduce__(self) -> tuple[type[DataError], tuple[Sequence[Fault]]]:
+        return type(self), (self.faults,)
+
 
 class UnknownNameError(AgentFaceError, KeyError):
     """A name that the registry, the rules or the face does not have."""
@@ -60,14 +64,33 @@ class UnknownNameError(AgentFaceError, KeyError):
     def __str__(self) -> str:  # KeyError would print the repr
         return str(self.args[0])
 
+    def __reduce__(self) -> tuple[type[UnknownNameError], tuple[str, object, Sequence[str]]]:
+        return type(self), (self.kind, self.got, self.known)
+
+
+class Place(NamedTuple):
+    """Where in a face's folder a value stands: its file, and the keys and numbers that lead to it in there."""
+
+    file: str
+    where: tuple[str | int, ...] = ()
+
+    def __str__(self) -> str:
+        return ": ".join(filter(None, (self.file, ".".join(map(str, self.where)))))
+
 
 class InvalidValueError(AgentFaceError, ValueError):
-    """A value of the wrong type, shape or range."""
+    """A value of the wrong type, shape or range; ``place`` is where in a face's files it stands, if it does."""
 
-    def __init__(self, where: str, expected: str, got: object, hint: str = "") -> None:
-        self.where, self.expected, self.got, self.hint = where, expected, got, hint
+    def __init__(
+        self, where: str | Place, expected: str, got: object, hint: str = "", place: Place | None = None
+    ) -> None:
+        self.where, self.expected, self.got, self.hint = str(where), expected, got, hint
+        self.place = where if isinstance(where, Place) else place
         tail = f"; {hint}" if hint else ""
         super().__init__(f"{where}: expected {expected}, got {got!r}{tail}")
+
+    def __reduce__(self) -> tuple[type[InvalidValueError], tuple[str, str, object, str, Place | None]]:
+        return type(self), (self.where, self.expected, self.got, self.hint, self.place)
 
 
 class GraphicsError(AgentFaceError):

@@ -263,7 +263,9 @@ class Face:
     def close(self) -> None:
         """Give back what the face has taken from the graphics driver; it draws no more. May be called twice."""
         self._closed = True
-        self._renderer = None
+        renderer, self._renderer = self._renderer, None
+        if renderer is not None:
+            renderer.close()
 
     def __enter__(self) -> Self:
         return self

@@ -7,8 +7,10 @@ from __future__ import annotations
 
 import argparse
 import json
+import select
 import socket
 import time
+from contextlib import suppress
 
 from pythonosc.osc_message import OscMessage
 from pythonosc.osc_message_builder import OscMessageBuilder
@@ -42,6 +44,7 @@ class Agent:
 
     def ask(self, seconds: float) -> str | None:
         """The status of the face as JSON; None if it does not answer in time."""
+        self.listen()
         end = time.monotonic() + seconds
         while time.monotonic() < end:
             try:
@@ -54,6 +57,14 @@ class Agent:
                 return str(message.params[0])
             print(f"the face says: {' '.join(map(str, message.params))}")
         return None
+
+    def listen(self) -> None:
+        """Print what the face said in the meantime; a status that came late is out of date."""
+        while select.select([self.socket], [], [], 0)[0]:
+            with suppress(ConnectionRefusedError):
+                message = OscMessage(self.socket.recv(65536))
+                if message.address != "/agentface/status":
+                    print(f"the face says: {' '.join(map(str, message.params))}")
 
 
 def main() -> None:

@@ -1,10 +1,16 @@
 from __future__ import annotations
 
+import json
+import select
+import socket
 import subprocess
 import sys
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import pytest
+from pythonosc.osc_message import OscMessage
+from pythonosc.osc_message_builder import OscMessageBuilder
 
 EXAMPLES = Path(__file__).parent.parent / "examples"
 pytestmark = [pytest.mark.gl, pytest.mark.slow]
@@ -49,6 +55,38 @@ def test_make_demo_films_an_agent_in_another_process(tmp_path):
     assert "all is well again" in said
     assert "'malformed': 0, 'unknown': 0, 'rejected': 0" in said
     assert "agentface show" in said
+
+
+def test_the_agent_tells_what_the_face_says_in_the_end():
+    """A face that is slow to start answers all that it was asked meanwhile, and the agent asks once a half second."""
+    agent = ["osc_agent.py", "--wait", 20, "--pace", 50, "--osc"]
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as face, ThreadPoolExecutor() as pool:
+        face.bind(("127.0.0.1", 0))
+        face.settimeout(60)
+        said = pool.submit(run, *agent, f"127.0.0.1:{face.getsockname()[1]}")
+        waiting = [face.recvfrom(1024) for _ in range(3)]
+        taken = asked = 0
+        while not said.done():
+            for datagram, sender in waiting:
+                message = OscMessage(datagram)
+                if message.address == "/agentface/status":
+                    asked += 1
+                    face.sendto(answer("/agentface/status", json.dumps({"messages": taken, "errors": {}})), sender)
+                else:
+                    taken += 1
+                    face.sendto(answer("/agentface/error", message.address, "no", "really"), sender)
+            waiting = [face.recvfrom(1024)] if select.select([face], [], [], 0.1)[0] else []
+    assert asked == 4
+    assert taken == 8
+    assert "the face took 8 messages" in said.result()
+    assert said.result().count("the face says: /agentface/emotions no really") == 7
+
+
+def answer(address: str, *arguments: str) -> bytes:
+    builder = OscMessageBuilder(address)
+    for argument in arguments:
+        builder.add_arg(argument)
+    return builder.build().dgram
 
 
 def test_the_agent_says_how_to_start_a_face():

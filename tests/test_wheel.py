@@ -15,7 +15,8 @@ from zipfile import ZipFile
 import pytest
 
 import agentface
-from agentface.resources import data_folder
+from agentface.resources import data_folder, face_folder
+from tests.base_mesh import base_mesh
 
 pytestmark = pytest.mark.slow
 
@@ -117,3 +118,20 @@ def test_installed_wheel_renders(installation: Installation):
     with Image.open(installation.folder / "elsewhere" / "x.png") as picture:
         assert picture.size == (160, 120)
         assert len(picture.convert("RGB").getcolors(160 * 120) or ()) > 100
+    assert "three-muscles.png" in installation.run("agentface", "figures", "combination")
+    assert (installation.folder / "elsewhere" / "figures" / "three-muscles.png").is_file()
+
+
+@pytest.mark.slow
+@pytest.mark.gl
+def test_installed_wheel_makes_a_face(installation: Installation, tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+    source = base_mesh().parent.parent
+    monkeypatch.setenv("AGENTFACE_DATA", str(tmp_path / "data"))
+    recipe = tmp_path / "sam.yaml"
+    recipe.write_bytes((face_folder("amber") / "recipe.yaml").read_bytes())
+    installation.run("agentface", "build", str(recipe), "--source", str(source))
+    made = tmp_path / "data" / "regions" / "sam"
+    assert (made / "head.glb").read_bytes() == (face_folder("amber") / "head.glb").read_bytes()
+    installation.run("agentface", "render", "--face", "sam", "-o", str(tmp_path / "sam.png"), "--size", "160x120")
+    installation.run("agentface", "render", "--face", "amber", "-o", str(tmp_path / "amber.png"), "--size", "160x120")
+    assert (tmp_path / "sam.png").read_bytes() == (tmp_path / "amber.png").read_bytes()

@@ -33,7 +33,7 @@ def check(*, files: tuple[Path, ...], face: str | None, deformer: str) -> None:
     places = [*files, *([face_folder(face)] if face else [])] or _shipped()
     faults: list[Fault] = []
     for place in places:
-        found = list(dict.fromkeys(_faults(place)))
+        found = list(dict.fromkeys(faults_of(place)))
         faults += found
         plural = "" if len(found) == 1 else "s"
         click.echo(f"{place}: {len(found)} fault{plural}" if found else f"{place}: good")
@@ -49,7 +49,9 @@ def _shipped() -> list[Path]:
     return [data_folder("rules"), *(face_folder(name) for name in face_names())]
 
 
-def _faults(place: Path) -> list[Fault]:
+def faults_of(place: str | Path) -> list[Fault]:
+    """Every fault of a file, of a folder of rules, or of a face's folder."""
+    place = Path(place)
     if not place.exists():
         return [Fault(place, None, "", "a file or a folder", "nothing")]
     if not place.is_dir():
@@ -61,22 +63,22 @@ def _faults(place: Path) -> list[Fault]:
         return [Fault(place, None, "", "a folder with rules or a face", "neither")]
     looks = sorted((place / "looks").glob("*.yaml"))
     found = [fault for path in [*(place / name for name in _face_readers()), *looks] for fault in _faults_of_file(path)]
-    return found or _faults_of(lambda: _whole_face(place))
+    return found or _faults_in(lambda: _whole_face(place))
 
 
 def _faults_of_file(path: Path) -> list[Fault]:
     from agentface.io.emotionml import load_emotionml
 
     if path.suffix.lower() in (".xml", ".emotionml"):
-        return _faults_of(lambda: load_emotionml(path))
+        return _faults_in(lambda: load_emotionml(path))
     readers = _rule_readers() | _face_readers()
     kind = "look.yaml" if path.parent.name == "looks" else path.name
     if kind not in readers:
         return [Fault(path, None, "", f"one of {', '.join(readers)}, or EmotionML in .xml", path.name)]
-    return _faults_of(lambda: readers[kind](path))
+    return _faults_in(lambda: readers[kind](path))
 
 
-def _faults_of(read: Callable[[], object]) -> list[Fault]:
+def _faults_in(read: Callable[[], object]) -> list[Fault]:
     try:
         read()
     except DataError as error:
@@ -100,45 +102,16 @@ def _rule_readers() -> dict[str, _Loader]:
 
 
 def _face_readers() -> dict[str, _Loader]:
-    from agentface.config import load
-    from agentface.head.asymmetry import read_asymmetry
     from agentface.head.look import read_look
-    from agentface.head.model import EyesFile, JawFile
-    from agentface.head.muscles import read_muscles
-    from agentface.head.regions import load_regions
-    from agentface.head.rings import EyelidsFile, LipsFile, load_rings
-    from agentface.head.volumes import read_volumes
-    from agentface.head.wrinkles import read_wrinkles
+    from agentface.head.model import TABLES
     from agentface.mesh.glb import read_glb
 
-    return {
-        "head.glb": read_glb,
-        "regions.yaml": lambda path: load_regions(path, _vertex_count(path)),
-        "muscles.yaml": read_muscles,
-        "feature_points.yaml": _read_landmarks,
-        "lips.yaml": lambda path: load_rings(path, LipsFile, _skin_beside(path)),
-        "eyelids.yaml": lambda path: load_rings(path, EyelidsFile, _skin_beside(path)),
-        "jaw.yaml": lambda path: load(path, JawFile),
-        "eyes.yaml": lambda path: load(path, EyesFile),
-        "volumes.yaml": read_volumes,
-        "wrinkles.yaml": read_wrinkles,
-        "asymmetry.yaml": read_asymmetry,
-        "look.yaml": read_look,
-    }
+    tables = {name: _beside_its_skin(read) for name, read in TABLES.items()}
+    return {"head.glb": read_glb, **tables, "look.yaml": read_look}
 
 
-def _read_landmarks(path: Path) -> object:
-    import numpy as np
-
-    from agentface.conventions import SIDES
-    from agentface.head.landmarks import load_landmarks
-
-    vertices = np.zeros((_vertex_count(path), 3), np.float32)
-    return load_landmarks(path, vertices, {f"pupil_{side}": np.zeros(3, np.float32) for side in SIDES})
-
-
-def _vertex_count(beside: Path) -> int:
-    return len(_skin_beside(beside).attributes["POSITION"])
+def _beside_its_skin(read: Callable[[Path, MeshArrays], object]) -> _Loader:
+    return lambda path: read(path, _skin_beside(path))
 
 
 def _skin_beside(beside: Path) -> MeshArrays:
@@ -168,15 +141,10 @@ def _whole_face(folder: Path) -> None:
 
 
 def _located(folder: Path, error: InvalidValueError) -> Fault:
-    """The fault behind an error that names ``lips.yaml``, or ``lips.yaml: rings.3``, or ``muscle risorius_l: zone``."""
     from agentface.config import Document
 
-    name, _, where = error.where.partition(": ")
-    if name.startswith("muscle "):
-        where = f"muscles.{name.removeprefix('muscle ')[:-2]}.{where}"
-        name = "muscles.yaml"
-    path = folder / name
-    if not path.is_file():
+    if error.place is None:
         return Fault(folder, None, error.where, error.expected, str(error.got), error.hint)
-    line = Document(path).line(tuple(where.split("."))) if path.suffix == ".yaml" else None
-    return Fault(path, line, where, error.expected, str(error.got), error.hint)
+    path, where = folder / error.place.file, error.place.where
+    line = Document(path).line(where) if path.suffix == ".yaml" else None
+    return Fault(path, line, ".".join(map(str, where)), error.expected, str(error.got), error.hint)

@@ -15,23 +15,25 @@ from agentface.commands.options import face_options
     "-o",
     "--output",
     type=click.Path(path_type=Path),
-    default=Path("docs/images"),
+    default=Path("figures"),
     metavar="FOLDER",
     show_default=True,
-    help="Where to write.",
+    help="Where to write; made if need be.",
 )
 @face_options
 def figures(*, names: tuple[str, ...], output: Path, face: str, deformer: str) -> None:
     """Draw the figures of the papers with this face, and the other pictures of the documents: all, or some by NAME."""
     from agentface.deform.protocol import check_deformer
     from agentface.errors import UnknownNameError
-    from agentface.io.files import check_writable, write_file
+    from agentface.io.files import check_writable, make_folder, write_file
     from agentface.studies.figures import FIGURES, draw
 
     check_deformer(deformer)
     for name in names:
         if name not in FIGURES:
             raise UnknownNameError("figure", name, tuple(FIGURES))
+    if output.absolute().parent.is_dir():
+        make_folder(output)
     check_writable(output / "figure.png")
     for name in names or tuple(FIGURES):
         click.echo(f"{name}: {FIGURES[name]}")

@@ -21,10 +21,11 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class FiredRule:
-    """A rule that fired: its strength in 0..1, its text, and the set it concludes for one muscle."""
+    """A rule that fired: its strength in 0..1, its text, the emotions' sets, and the set it concludes of a muscle."""
 
     strength: float
     text: str
+    premise: tuple[tuple[str, str], ...]
     muscle: str
     consequent: str
 
@@ -96,17 +97,15 @@ def _outcome(mode: Mode, weight: float, state: EmotionState) -> ModeOutcome:
         for place in np.argwhere(strengths > 0.0):
             sets = [INTENSITY_SETS[index] for index in place]
             consequent = CONTRACTION_SETS[consequents[tuple(place)]]
-            rules.append(
-                FiredRule(float(strengths[tuple(place)]), _text(mode, sets, muscle, consequent), muscle, consequent)
-            )
+            premise = tuple(zip(mode.emotions, sets, strict=True))
+            text = _text(premise, muscle, consequent)
+            rules.append(FiredRule(float(strengths[tuple(place)]), text, premise, muscle, consequent))
     return ModeOutcome(mode.name, weight, mode.description, mode.source, tuple(rules), tuple(outcomes))
 
 
-def _text(mode: Mode, sets: list[str], muscle: str, consequent: str) -> str:
-    premise = " and ".join(
-        f"{emotion.capitalize()} is {name}" for emotion, name in zip(mode.emotions, sets, strict=True)
-    )
-    return f"if {premise} then contraction of {muscle} is {consequent}"
+def _text(premise: tuple[tuple[str, str], ...], muscle: str, consequent: str) -> str:
+    conditions = " and ".join(f"{emotion.capitalize()} is {name}" for emotion, name in premise)
+    return f"if {conditions} then contraction of {muscle} is {consequent}"
 
 
 def _report(explanation: Explanation, width: int) -> str:

@@ -132,7 +132,7 @@ class BlendsFile(Table):
     blends: dict[str, BlendTable]
 
 
-def load_emotions(path: Path) -> EmotionsFile:
+def load_emotions(path: str | Path) -> EmotionsFile:
     """The single expressions at ``path``; raises DataError with every fault found."""
     document = Document(path)
     file = document.collect(EmotionsFile)
@@ -142,7 +142,7 @@ def load_emotions(path: Path) -> EmotionsFile:
     return _checked(document, file)
 
 
-def load_blends(path: Path) -> BlendsFile:
+def load_blends(path: str | Path) -> BlendsFile:
     """The blends at ``path``; raises DataError with every fault found."""
     document = Document(path)
     file = document.collect(BlendsFile)

@@ -30,7 +30,7 @@ class AsymmetryFile(Table):
     gains: dict[str, Annotated[float, Field(ge=0.5, le=1)]]
 
 
-def read_asymmetry(path: Path) -> AsymmetryFile:
+def read_asymmetry(path: str | Path) -> AsymmetryFile:
     """The checked table; raises DataError naming unknown muscles."""
     document = Document(path)
     file = document.collect(AsymmetryFile)

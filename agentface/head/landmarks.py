@@ -22,6 +22,9 @@ PAIRED_LANDMARKS: tuple[str, ...] = (
 )  # fmt: skip
 
 
+_NO_VERTICES = {f"pupil_{side}" for side in SIDES}
+
+
 class LandmarkRow(Table):
     """One landmark: the vertices whose mean it is, and its MPEG-4 feature point where it has one."""
 
@@ -44,8 +47,8 @@ class Landmarks(dict[str, Floats]):
         return float(np.linalg.norm(self["pupil_l"] - self["pupil_r"]))
 
 
-def load_landmarks(path: Path, vertices: Floats, extra: dict[str, Floats]) -> Landmarks:
-    """Read ``feature_points.yaml``; ``extra`` holds landmarks that are no vertices (the pupils).
+def read_landmarks(path: str | Path, vertex_count: int) -> FeaturePointsFile:
+    """The checked table of a mesh of ``vertex_count`` vertices.
 
     Raises DataError when a landmark is missing, unknown or names a vertex that the mesh does not have.
     """
@@ -56,14 +59,16 @@ def load_landmarks(path: Path, vertices: Floats, extra: dict[str, Floats]) -> La
         document.fault(
             ("landmarks", name), "a landmark that agentface knows", name, f"known: {', '.join(sorted(known))}"
         )
-    for name in sorted(known - file.landmarks.keys() - extra.keys()):
+    for name in sorted(known - file.landmarks.keys() - _NO_VERTICES):
         document.fault(("landmarks",), f"the landmark {name}", "none")
-    result = Landmarks(extra)
     for name, row in file.landmarks.items():
-        bad = [index for index in row.vertices if not 0 <= index < len(vertices)]
+        bad = [index for index in row.vertices if not 0 <= index < vertex_count]
         if bad:
-            document.fault(("landmarks", name, "vertices"), f"vertices in 0..{len(vertices) - 1}", str(bad))
-            continue
-        result[name] = vertices[row.vertices].mean(axis=0)
+            document.fault(("landmarks", name, "vertices"), f"vertices in 0..{vertex_count - 1}", str(bad))
     document.check()
-    return result
+    return file
+
+
+def place_landmarks(file: FeaturePointsFile, vertices: Floats, pupils: dict[str, Floats]) -> Landmarks:
+    """Where the landmarks are on a face at rest, ``vertices (V, 3)`` m; the pupils are no vertices of the skin."""
+    return Landmarks(pupils | {name: vertices[row.vertices].mean(axis=0) for name, row in file.landmarks.items()})

@@ -114,8 +114,9 @@ def _looks(model: HeadModel) -> Path:
     return model.folder / "looks"
 
 
-def read_look(path: Path) -> Look:
+def read_look(path: str | Path) -> Look:
     """The look in a file; raises DataError with every fault of the file and of the picture it wears as skin."""
+    path = Path(path)
     if not path.is_file():
         return _read(path)
     look = prepared(stamp_of([path.resolve()]), "look", lambda: _read(path))

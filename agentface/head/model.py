@@ -17,7 +17,7 @@ from agentface.config import Table, load
 from agentface.conventions import SIDES, Floats, Indices, check_fraction
 from agentface.errors import DataError, Fault, InvalidValueError
 from agentface.head import asymmetry as own
-from agentface.head.landmarks import Landmarks, load_landmarks
+from agentface.head.landmarks import Landmarks, place_landmarks, read_landmarks
 from agentface.head.muscle_set import MuscleSet
 from agentface.head.muscles import Borders, MusclesFile, place_muscles, read_muscles
 from agentface.head.regions import Regions, load_regions
@@ -68,6 +68,22 @@ class JawFile(Table):
 
     pivot: Annotated[_Point, AfterValidator(_in_the_middle)]
     widest_deg: Annotated[float, Field(gt=0, le=60)]
+
+
+MUSCLES_FILE = "muscles.yaml"
+TABLES: dict[str, Callable[[Path, MeshArrays], Any]] = {
+    "eyes.yaml": lambda path, _: load(path, EyesFile),
+    "lips.yaml": lambda path, skin: load_rings(path, LipsFile, skin),
+    "eyelids.yaml": lambda path, skin: load_rings(path, EyelidsFile, skin),
+    "regions.yaml": lambda path, skin: load_regions(path, len(skin.attributes["POSITION"])),
+    "feature_points.yaml": lambda path, skin: read_landmarks(path, len(skin.attributes["POSITION"])),
+    "jaw.yaml": lambda path, _: load(path, JawFile),
+    MUSCLES_FILE: lambda path, _: read_muscles(path),
+    "wrinkles.yaml": lambda path, _: read_wrinkles(path),
+    "volumes.yaml": lambda path, _: read_volumes(path),
+    "asymmetry.yaml": lambda path, _: own.read_asymmetry(path),
+}
+"""The tables of a face's folder, and how each is read and checked beside the face's skin."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -215,9 +231,10 @@ def _read(folder: Path, muscles: MusclesFile | None, asymmetry: float) -> HeadMo
     meshes = read_glb(folder / "head.glb")
     skin = _checked_skin(folder / "head.glb", meshes)
     vertices = np.ascontiguousarray(skin.attributes["POSITION"], np.float32)
-    eyes = load(folder / "eyes.yaml", EyesFile)
-    lips = load_rings(folder / "lips.yaml", LipsFile, skin)
-    eyelids = load_rings(folder / "eyelids.yaml", EyelidsFile, skin)
+    tables = {
+        name: read(folder / name, skin) for name, read in TABLES.items() if not (muscles and name == MUSCLES_FILE)
+    }
+    eyes, lips, eyelids = tables["eyes.yaml"], tables["lips.yaml"], tables["eyelids.yaml"]
     shapes = dict(skin.shapes)
     moves = np.zeros_like(vertices)
     if own.SHAPE in shapes:
@@ -237,17 +254,17 @@ def _read(folder: Path, muscles: MusclesFile | None, asymmetry: float) -> HeadMo
         mirror=skin.attributes["_MIRROR"].astype(np.int32),
         shapes=shapes,
         parts={name: _moved(meshes[name], part_moves[name]) for name in PARTS},
-        regions=load_regions(folder / "regions.yaml", len(vertices)),
-        landmarks=load_landmarks(folder / "feature_points.yaml", vertices, pupils),
+        regions=tables["regions.yaml"],
+        landmarks=place_landmarks(tables["feature_points.yaml"], vertices, pupils),
         eyes=eyes,
-        jaw=load(folder / "jaw.yaml", JawFile),
+        jaw=tables["jaw.yaml"],
         lips=lips,
         eyelids=eyelids,
-        muscles_file=muscles or read_muscles(folder / "muscles.yaml"),
-        wrinkles_file=read_wrinkles(folder / "wrinkles.yaml"),
-        volumes_file=read_volumes(folder / "volumes.yaml"),
+        muscles_file=muscles or tables[MUSCLES_FILE],
+        wrinkles_file=tables["wrinkles.yaml"],
+        volumes_file=tables["volumes.yaml"],
         own_uv=texture_coordinates(skin),
-        gains=own.gains_of(own.read_asymmetry(folder / "asymmetry.yaml"), asymmetry),
+        gains=own.gains_of(tables["asymmetry.yaml"], asymmetry),
         part_moves=part_moves,
     )
 

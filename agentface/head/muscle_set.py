@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from agentface.conventions import Doubles, Floats
-from agentface.errors import InvalidValueError, UnknownNameError
+from agentface.errors import InvalidValueError, Place, UnknownNameError
 
 Falloff: TypeAlias = Literal["smooth", "waters"]
 FALLOFFS: tuple[Falloff, ...] = ("smooth", "waters")
@@ -77,7 +77,8 @@ class MuscleSet:
             bad = int(np.flatnonzero(~good)[0])
             value = values[bad]
             got = value.tolist() if value.size <= 3 else f"{value.min():g}..{value.max():g}"
-            raise InvalidValueError(f"muscle {self.names[bad]}: {name}", expected, got)
+            place = Place("muscles.yaml", ("muscles", self.names[bad][:-2], name))
+            raise InvalidValueError(f"muscle {self.names[bad]}: {name}", expected, got, place=place)
 
     def __len__(self) -> int:
         return len(self.names)

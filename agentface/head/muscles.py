@@ -81,8 +81,9 @@ class AnatomyFile(MusclesFile):
     model_config = ConfigDict(extra="ignore")
 
 
-def read_muscles(path: Path) -> MusclesFile:
+def read_muscles(path: str | Path) -> MusclesFile:
     """The checked table; raises DataError naming unknown muscles, landmarks and regions, and missing muscles."""
+    path = Path(path)
     document = Document(path)
     file = document.collect(AnatomyFile if path.name == "anatomy.yaml" else MusclesFile)
     rows = document.data.get("muscles") if isinstance(document.data, dict) else None

@@ -74,7 +74,7 @@ def with_sides(name: str) -> tuple[str, ...]:
     return (name,)
 
 
-def load_regions(path: Path, vertex_count: int) -> Regions:
+def load_regions(path: str | Path, vertex_count: int) -> Regions:
     """Read ``regions.yaml``; raises DataError when ranges overlap, leave a gap or do not fit the mesh."""
     document = Document(path)
     file = document.collect(RegionsFile)

@@ -42,7 +42,7 @@ class EyelidsFile(LidMotion):
 _Rings = TypeVar("_Rings", LipsFile, EyelidsFile)
 
 
-def load_rings(path: Path, model: type[_Rings], skin: MeshArrays) -> _Rings:
+def load_rings(path: str | Path, model: type[_Rings], skin: MeshArrays) -> _Rings:
     """Read ``lips.yaml`` or ``eyelids.yaml``; raises DataError also for rings that are none on the mesh ``skin``."""
     document = Document(path)
     file = document.collect(model)

@@ -22,11 +22,12 @@ _FORMATS = ("PNG", "JPEG", "WEBP")
 _MODES = ("1", "L", "LA", "P", "PA", "RGB", "RGBA", "CMYK", "YCbCr")
 
 
-def read_texture(path: Path, largest: int = SIDE) -> Bytes:
+def read_texture(path: str | Path, largest: int = SIDE) -> Bytes:
     """The picture at ``path`` as read-only ``(H, W, 4)`` uint8 with straight alpha, made smaller to fit ``largest``.
 
     Raises DataError for no file, no PNG, JPEG or WebP of 8 bits a channel, a damaged or a too large one.
     """
+    path = Path(path)
     try:
         status = path.stat()
     except (OSError, ValueError) as error:

@@ -73,7 +73,7 @@ class PlacedVolume:
     ways: Floats
 
 
-def read_volumes(path: Path) -> VolumesFile:
+def read_volumes(path: str | Path) -> VolumesFile:
     """The checked table; raises DataError naming unknown muscles, landmarks and regions."""
     document = Document(path)
     file = document.collect(VolumesFile)

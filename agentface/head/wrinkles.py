@@ -14,7 +14,7 @@ from pydantic import Field
 
 from agentface.config import Document, Table
 from agentface.conventions import SIDES, Doubles, Floats
-from agentface.errors import InvalidValueError, did_you_mean
+from agentface.errors import InvalidValueError, Place, did_you_mean
 from agentface.head.landmarks import LANDMARKS, PAIRED_LANDMARKS, Landmarks
 from agentface.head.muscle_set import MuscleSet
 from agentface.head.muscles import Anchor, Borders, MusclesFile, Territory, Wrinkles, anchor_point
@@ -78,7 +78,7 @@ class PlacedTrain:
     reach: Floats
 
 
-def read_wrinkles(path: Path) -> WrinklesFile:
+def read_wrinkles(path: str | Path) -> WrinklesFile:
     """The checked table; raises DataError naming unknown muscles, landmarks and regions."""
     document = Document(path)
     file = document.collect(WrinklesFile)
@@ -183,7 +183,9 @@ def _drawn_train(name: str, row: TrainRow, side: str, landmarks: Landmarks) -> D
     facing = _unit(np.array(row.facing) * [sign, 1.0, 1.0])
     way = _beside(end - start, facing)
     if not np.linalg.norm(way) > _SHORTEST * unit:
-        raise InvalidValueError(f"wrinkles.yaml: trains.{name}.end", _APART, f"{row.end.at} {row.end.offset}")
+        raise InvalidValueError(
+            Place("wrinkles.yaml", ("trains", name, "end")), _APART, f"{row.end.at} {row.end.offset}"
+        )
     along = _unit(way)
     return DrawnTrain(
         start=start,

@@ -52,8 +52,9 @@ class VocabulariesFile(Table):
     categories: dict[Name, Annotated[list[Name], Field(min_length=1), AfterValidator(_once)]]
 
 
-def load_vocabularies(path: Path) -> VocabulariesFile:
+def load_vocabularies(path: str | Path) -> VocabulariesFile:
     """The file at ``path``; raises DataError with every fault of it."""
+    path = Path(path)
     return load(path, VocabulariesFile)
 
 

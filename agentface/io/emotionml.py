@@ -77,8 +77,9 @@ def read_emotionml(data: bytes, where: Path | str = "document.xml") -> Score:
     return Score(cues, reader.notes)
 
 
-def load_emotionml(path: Path) -> Score:
+def load_emotionml(path: str | Path) -> Score:
     """The score of the document at ``path``; raises DataError as :func:`read_emotionml` does."""
+    path = Path(path)
     try:
         with path.open("rb") as file:
             data = file.read(LARGEST_FILE + 1)

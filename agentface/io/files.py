@@ -16,8 +16,9 @@ _HINTS = {
 }
 
 
-def check_writable(path: Path) -> None:
+def check_writable(path: str | Path) -> None:
     """Raise OutputError when ``path`` cannot become a file, before work is spent on its content."""
+    path = Path(path)
     folder = path.parent
     if path.is_dir():
         raise OutputError(f"{path}: expected the name of a file, got a folder")
@@ -27,6 +28,15 @@ def check_writable(path: Path) -> None:
         raise OutputError(f"{path}: expected a folder that can be written to, got {folder}; choose another one")
 
 
+def make_folder(folder: str | Path) -> None:
+    """Make a folder, and those above it, where there is none; raises OutputError."""
+    folder = Path(folder)
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise OutputError(cannot_write(folder, error)) from error
+
+
 def cannot_write(path: Path, error: Exception) -> str:
     """The message of an OutputError for what the system, or a library, said of ``path``."""
     number, reason = getattr(error, "errno", None), getattr(error, "strerror", None) or error
@@ -34,8 +44,9 @@ def cannot_write(path: Path, error: Exception) -> str:
     return f"{path}: expected to write it, got: {reason}; {hint}"
 
 
-def write_file(path: Path, content: bytes) -> None:
+def write_file(path: str | Path, content: bytes) -> None:
     """Write ``content``; raises OutputError, and then leaves what was there."""
+    path = Path(path)
     check_writable(path)
     temporary = None
     try:

@@ -33,7 +33,8 @@ class SequenceWriter:
     is left of a longer sequence would follow this one.
     """
 
-    def __init__(self, path: Path, size: tuple[int, int], fps: float = 30.0, *, keep: bool = False) -> None:
+    def __init__(self, path: str | Path, size: tuple[int, int], fps: float = 30.0, *, keep: bool = False) -> None:
+        path = Path(path)
         self._digits = check_sequence_name(path)
         check_writable(path)
         self.path, self.size, self._fps, self._keep = path, size, check_rate("fps", fps), keep
@@ -97,8 +98,9 @@ class SequenceWriter:
             self._next += 1
 
 
-def check_sequence_name(path: Path) -> int:
+def check_sequence_name(path: str | Path) -> int:
     """The number of digits that the name asks for; raises OutputError for one without a place for the number."""
+    path = Path(path)
     places = _NUMBER.findall(path.name)
     if path.suffix.lower() != ".png" or len(places) != 1 or path.name.count("%") != 1:
         example = path.with_name(f"{path.stem.partition('%')[0].rstrip('-_') or 'face'}-%05d.png")

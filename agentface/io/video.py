@@ -41,7 +41,8 @@ class VideoWriter:
     Raises OutputError when the file cannot be written, InvalidValueError for a wrong size or rate.
     """
 
-    def __init__(self, path: Path, size: tuple[int, int], fps: float = 30.0, *, keep: bool = False) -> None:
+    def __init__(self, path: str | Path, size: tuple[int, int], fps: float = 30.0, *, keep: bool = False) -> None:
+        path = Path(path)
         check_video_name(path)
         check_writable(path)
         if any(side < 2 or side % 2 for side in size):
@@ -156,18 +157,20 @@ class _File:
         return len(content)
 
 
-def check_video_name(path: Path) -> None:
+def check_video_name(path: str | Path) -> None:
     """Raise OutputError for a name whose ending is no video format."""
+    path = Path(path)
     if path.suffix.lower() not in _FORMATS:
         raise OutputError(
             f"{path}: expected a name that ends in {', '.join(_FORMATS)}, got {path.suffix or 'no ending'!r}"
         )
 
 
-def keep_whole_fragments(path: Path) -> float:
+def keep_whole_fragments(path: str | Path) -> float:
     """Cut a film behind its last whole fragment; its length in seconds. Without any, the file is removed: 0."""
     import av
 
+    path = Path(path)
     with path.open("r+b") as file:
         file.truncate(whole_fragments(file))
         empty = file.tell() == 0

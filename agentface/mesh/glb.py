@@ -1,9 +1,14 @@
-"""Reads and writes the head asset, ``head.glb``: plain arrays in, plain arrays out."""
+"""Reads and writes the head asset, ``head.glb``: plain arrays in, plain arrays out.
+
+Source: Khronos Group, glTF 2.0 Specification (ISO/IEC 12113:2022), chapters 3.6 (buffers, accessors, sparse accessors),
+3.7 (meshes, morph targets) and 4 (GLB).
+"""
 
 from __future__ import annotations
 
 import json
 import struct
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -12,7 +17,7 @@ import numpy as np
 import numpy.typing as npt
 
 from agentface.conventions import Floats, Indices
-from agentface.errors import DataError, Fault
+from agentface.errors import DataError, Fault, InvalidValueError
 
 Array = npt.NDArray[Any]
 
@@ -22,14 +27,17 @@ _COMPONENTS: dict[int, type[np.generic]] = {
 _CODES = {np.dtype(kind): code for code, kind in _COMPONENTS.items()}
 _WIDTHS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4}
 _TYPES = {width: name for name, width in _WIDTHS.items()}
+_ATTRIBUTES = frozenset(_CODES) - {np.dtype(np.uint32)}
+_ARRAY_BUFFER, _ELEMENT_ARRAY_BUFFER = 34962, 34963
 _LARGEST = 64 * 1024 * 1024
 _LARGEST_STRIDE = 252
 _HEADER = 20
+_CHUNK = 8
 
 
 @dataclass(slots=True)
 class Shape:
-    """A sparse morph target: ``offsets`` ``(N, 3)`` in metres at the vertices ``indices`` ``(N,)``."""
+    """A sparse morph target: ``offsets`` ``(N, 3)`` in metres at the vertices ``indices`` ``(N,)``, in rising order."""
 
     indices: Indices
     offsets: Floats
@@ -51,8 +59,9 @@ class MeshArrays:
     extras: dict[str, Any] = field(default_factory=dict)
 
 
-def read_glb(path: Path) -> dict[str, MeshArrays]:
+def read_glb(path: str | Path) -> dict[str, MeshArrays]:
     """The meshes of a GLB file by name; raises DataError when it is unreadable."""
+    path = Path(path)
     try:
         if path.stat().st_size > _LARGEST:
             raise DataError([Fault(path, None, "", f"at most {_LARGEST} bytes", f"{path.stat().st_size}")])
@@ -73,7 +82,7 @@ class _GlbReader:
         if (magic, version, kind) != (b"glTF", 2, b"JSON"):
             raise ValueError("not a binary glTF 2.0 file")
         self.document: dict[str, Any] = json.loads(content[_HEADER : _HEADER + length])
-        self.blob = content[_HEADER + length + 8 :]
+        self.blob = content[_HEADER + length + _CHUNK :]
 
     def rows(self, index: int, offset: int, kind: np.dtype[Any], shape: tuple[int, int]) -> Array:
         """``shape`` components of a view whose rows may be interleaved with others, or padded to four bytes."""
@@ -96,10 +105,15 @@ class _GlbReader:
         return found if width > 1 else found[:, 0]
 
     def shape(self, index: int) -> Shape:
-        sparse = self.document["accessors"][index]["sparse"]
+        row = self.document["accessors"][index]
+        if "sparse" not in row:
+            return Shape(np.zeros(0, np.int32), np.zeros((0, 3), np.float32))
+        sparse = row["sparse"]
         where, values = sparse["indices"], sparse["values"]
         kind = np.dtype(_COMPONENTS[where["componentType"]])
         indices = self.view(where["bufferView"], where.get("byteOffset", 0), kind, sparse["count"])
+        if len(indices) and not 0 <= indices.min() <= indices.max() < row["count"]:
+            raise ValueError(f"a morph target of {row['count']} vertices that moves vertex {indices.max()}")
         single = np.dtype(np.float32)
         offsets = self.view(values["bufferView"], values.get("byteOffset", 0), single, sparse["count"] * 3)
         return Shape(indices.astype(np.int32), offsets.reshape(-1, 3))
@@ -123,56 +137,121 @@ def texture_coordinates(mesh: MeshArrays) -> Floats | None:
     return found.astype(np.float32) / np.float32(np.iinfo(found.dtype).max)
 
 
-def write_glb(path: Path, meshes: dict[str, MeshArrays], copyright_line: str) -> None:
-    """Write meshes as one GLB file, morph targets as sparse accessors."""
-    import pygltflib as gl
+def write_glb(path: str | Path, meshes: Mapping[str, MeshArrays], copyright_line: str) -> None:
+    """Write meshes as one GLB file; raises what :func:`encode_glb` raises, and OSError."""
+    path = Path(path)
+    path.write_bytes(encode_glb(meshes, copyright_line))
 
-    document = gl.GLTF2(asset=gl.Asset(version="2.0", generator="agentface", copyright=copyright_line))
-    blob = bytearray()
 
-    def put(array: Array) -> int:
-        blob.extend(b"\0" * (-len(blob) % 4))
-        document.bufferViews.append(gl.BufferView(buffer=0, byteOffset=len(blob), byteLength=array.nbytes))
-        blob.extend(np.ascontiguousarray(array).tobytes())
-        return len(document.bufferViews) - 1
+def encode_glb(meshes: Mapping[str, MeshArrays], copyright_line: str) -> bytes:
+    """Meshes as a GLB file, one node each, morph targets as sparse accessors; the same meshes give the same bytes.
 
-    def accessor(array: Array, *, bounds: bool = False) -> int:
-        width = 1 if array.ndim == 1 else array.shape[1]
-        row = gl.Accessor(
-            bufferView=put(array), componentType=_CODES[array.dtype], count=len(array), type=_TYPES[width],
-            normalized=array.dtype in (np.uint8, np.uint16) and width > 1,
-        )  # fmt: skip
-        if bounds:
-            row.min, row.max = array.min(0).tolist(), array.max(0).tolist()
-        document.accessors.append(row)
-        return len(document.accessors) - 1
-
-    def target(shape: Shape, count: int) -> dict[str, int]:
-        row = gl.Accessor(componentType=gl.FLOAT, count=count, type="VEC3")
-        row.min, row.max = shape.offsets.min(0).tolist(), shape.offsets.max(0).tolist()
-        row.sparse = gl.Sparse(
-            count=len(shape.indices),
-            indices=gl.AccessorSparseIndices(
-                bufferView=put(shape.indices.astype(np.uint16)), componentType=gl.UNSIGNED_SHORT
-            ),
-            values=gl.AccessorSparseValues(bufferView=put(shape.offsets.astype(np.float32))),
-        )
-        document.accessors.append(row)
-        return {"POSITION": len(document.accessors) - 1}
-
+    Attributes are float32, or whole numbers of 8 or 16 bits; a mesh may have more than 65 535 vertices.
+    Raises InvalidValueError for arrays that glTF cannot hold.
+    """
+    writer = _Writer(copyright_line)
     for name, mesh in meshes.items():
-        count = len(mesh.attributes["POSITION"])
-        attributes = gl.Attributes()
-        for key, array in mesh.attributes.items():
-            setattr(attributes, key, accessor(array, bounds=key == "POSITION"))
-        primitive = gl.Primitive(attributes=attributes, indices=accessor(mesh.triangles.astype(np.uint16).ravel()))
-        primitive.targets = [target(shape, count) for shape in mesh.shapes.values()]
-        extras = {**mesh.extras, "targetNames": list(mesh.shapes)} if mesh.shapes else dict(mesh.extras)
-        document.meshes.append(gl.Mesh(name=name, primitives=[primitive], extras=extras))
-        document.nodes.append(gl.Node(mesh=len(document.meshes) - 1, name=name))
-    document.scenes.append(gl.Scene(nodes=list(range(len(document.nodes)))))
-    document.scene = 0
-    blob.extend(b"\0" * (-len(blob) % 4))
-    document.buffers.append(gl.Buffer(byteLength=len(blob)))
-    document.set_binary_blob(bytes(blob))
-    document.save_binary(str(path))
+        writer.mesh(name, mesh)
+    return writer.content()
+
+
+class _Writer:
+    def __init__(self, copyright_line: str) -> None:
+        self.blob = bytearray()
+        self.accessors: list[dict[str, Any]] = []
+        self.views: list[dict[str, Any]] = []
+        self.meshes: list[dict[str, Any]] = []
+        self.asset = {"version": "2.0", "generator": "agentface", "copyright": copyright_line}
+
+    def content(self) -> bytes:
+        nodes = [{"mesh": number, "name": mesh["name"]} for number, mesh in enumerate(self.meshes)]
+        document = {
+            "asset": self.asset,
+            "scene": 0,
+            "scenes": [{"nodes": list(range(len(nodes)))}],
+            "nodes": nodes,
+            "meshes": self.meshes,
+            "accessors": self.accessors,
+            "bufferViews": self.views,
+            "buffers": [{"byteLength": len(self.blob)}],
+        }
+        text = json.dumps(document, separators=(",", ":"), ensure_ascii=False, allow_nan=False).encode()
+        text += b" " * (-len(text) % 4)
+        binary = bytes(self.blob)
+        size = _HEADER + len(text) + _CHUNK + len(binary)
+        header = struct.pack("<4sIII4s", b"glTF", 2, size, len(text), b"JSON")
+        return header + text + struct.pack("<I4s", len(binary), b"BIN\0") + binary
+
+    def view(self, array: Array, **properties: int) -> int:
+        raw = np.ascontiguousarray(array).tobytes()
+        self.views.append({"buffer": 0, "byteOffset": len(self.blob), "byteLength": len(raw), **properties})
+        self.blob += raw + b"\0" * (-len(raw) % 4)
+        return len(self.views) - 1
+
+    def accessor(self, **properties: Any) -> int:
+        self.accessors.append(properties)
+        return len(self.accessors) - 1
+
+    def attribute(self, name: str, array: Array) -> int:
+        width = 1 if array.ndim == 1 else array.shape[-1]
+        if array.ndim > 2 or width not in _TYPES or array.dtype not in _ATTRIBUTES or not len(array):
+            expected = "rows of one to four float32, or whole numbers of 8 or 16 bits"
+            raise InvalidValueError(name, expected, f"{array.dtype} of shape {array.shape}")
+        rows = array.reshape(len(array), width)
+        size = width * array.itemsize
+        stride = size + -size % 4  # every vertex begins at a multiple of four bytes
+        padded = np.zeros((len(rows), stride), np.uint8)
+        padded[:, :size] = np.ascontiguousarray(rows).view(np.uint8)
+        strided = {} if stride == size else {"byteStride": stride}
+        properties: dict[str, Any] = {"bufferView": self.view(padded, target=_ARRAY_BUFFER, **strided)}
+        properties |= {"componentType": _CODES[array.dtype], "count": len(array), "type": _TYPES[width]}
+        if array.dtype in (np.uint8, np.uint16) and width > 1:
+            properties["normalized"] = True
+        if name == "POSITION":
+            properties |= _bounds(array)
+        return self.accessor(**properties)
+
+    def triangles(self, triangles: Indices, vertices: int) -> int:
+        if not len(triangles) or not 0 <= triangles.min() <= triangles.max() < vertices:
+            got = f"{triangles.min()} to {triangles.max()}" if len(triangles) else "no triangle"
+            raise InvalidValueError("triangles", f"vertices in 0..{vertices - 1}", got)
+        # the largest number of a type restarts a strip
+        kind = np.dtype(np.uint16 if triangles.max() < np.iinfo(np.uint16).max else np.uint32)
+        view = self.view(triangles.astype(kind).ravel(), target=_ELEMENT_ARRAY_BUFFER)
+        return self.accessor(bufferView=view, componentType=_CODES[kind], count=triangles.size, type="SCALAR")
+
+    def target(self, name: str, shape: Shape, vertices: int) -> dict[str, int]:
+        indices, offsets = shape.indices, shape.offsets.astype(np.float32)
+        properties = {"componentType": _CODES[offsets.dtype], "count": vertices, "type": "VEC3"}
+        if not len(indices):
+            zero = np.zeros((1, 3), np.float32)
+            return {"POSITION": self.accessor(**properties, **_bounds(zero))}
+        if not 0 <= indices[0] <= indices[-1] < vertices or (np.diff(indices) <= 0).any():
+            raise InvalidValueError(f"shape {name}", f"rising vertices in 0..{vertices - 1}", "others")
+        kind = np.dtype(np.uint16 if indices[-1] <= np.iinfo(np.uint16).max else np.uint32)
+        properties["sparse"] = {
+            "count": len(indices),
+            "indices": {"bufferView": self.view(indices.astype(kind)), "componentType": _CODES[kind]},
+            "values": {"bufferView": self.view(offsets)},
+        }
+        at_rest = np.zeros((int(len(indices) < vertices), 3), np.float32)
+        return {"POSITION": self.accessor(**properties, **_bounds(np.concatenate([offsets, at_rest])))}
+
+    def mesh(self, name: str, mesh: MeshArrays) -> None:
+        vertices = len(mesh.attributes["POSITION"])
+        if any(len(array) != vertices for array in mesh.attributes.values()):
+            lengths = ", ".join(f"{key} {len(array)}" for key, array in mesh.attributes.items())
+            raise InvalidValueError(name, "attributes with one row a vertex", lengths)
+        primitive: dict[str, Any] = {
+            "attributes": {key: self.attribute(key, array) for key, array in mesh.attributes.items()},
+            "indices": self.triangles(mesh.triangles, vertices),
+        }
+        extras = dict(mesh.extras)
+        if mesh.shapes:
+            primitive["targets"] = [self.target(key, shape, vertices) for key, shape in mesh.shapes.items()]
+            extras["targetNames"] = list(mesh.shapes)
+        self.meshes.append({"name": name, "primitives": [primitive], **({"extras": extras} if extras else {})})
+
+
+def _bounds(rows: Array) -> dict[str, list[float]]:
+    return {"min": rows.min(0).tolist(), "max": rows.max(0).tolist()}

@@ -63,7 +63,7 @@ class Conflicts:
         return self._ranks.get(name, self._others)
 
 
-def load_conflicts(path: Path) -> Conflicts:
+def load_conflicts(path: str | Path) -> Conflicts:
     """The table at ``path``; raises DataError with every fault of it."""
     document = Document(path)
     file = document.collect(ConflictsFile)

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import weakref
+from contextlib import AbstractContextManager
 from functools import cached_property
-from typing import Any
+from typing import Any, Self
 
 import numpy as np
 
@@ -14,8 +16,9 @@ from agentface.head.look import Look, load_look
 from agentface.head.model import HeadModel
 from agentface.head.skin_image import skin_texture
 from agentface.view.camera import Camera, named_view
-from agentface.view.gl.context import Witness, finish, make_current, open_context, shader_names
+from agentface.view.gl.context import LostContextCheck, finish, shader_names
 from agentface.view.gl.noise import SIDE, noise_volume
+from agentface.view.gl.ownership import Ownership
 from agentface.view.gl.programs import FRAME_BINDING, Programs
 from agentface.view.gl.quality import quality_named
 from agentface.view.gl.shadow import KeyShadow
@@ -41,6 +44,7 @@ _SOFTNESSES = 0.35, 0.1  # of brows and lashes
 _FRAME_BYTES = 3 * 64 + 11 * 16
 _IRIS_RADIUS = 0.405  # in radii of the eyeball
 _LONGEST_EDGE = 16.0  # pixels; longer edges of fine skin are cut and curved
+_SPARE_PIXELS = 400_000  # samples, of 20 bytes, that pictures of other sizes may keep
 _COARSEST, _FINEST = 6, 10  # the lengths of those edges are powers of two: 16 mm to 1 mm
 
 
@@ -52,49 +56,84 @@ class Renderer:
         look: its colours and lights; the model's own ``look.yaml`` when None.
         context: a ``moderngl.Context``; a headless one is opened when None.
 
-    Raises GraphicsError when there is no OpenGL or a shader does not compile.
+    A context of its own is current only while it draws: a program's own, and its state, stay as they are, and any
+    thread may draw, one at a time. In a ``context`` that is given, what OpenGL is set to and bound to is changed.
+    ``with Renderer(model) as renderer:`` closes it in the end.
+
+    Raises GraphicsError when there is no OpenGL, a shader does not compile, or the process may not draw.
     """
 
-    @shader_names()
     def __init__(self, model: HeadModel, look: Look | None = None, context: Any = None) -> None:
         self.model = model
         self.look = look if look is not None else load_look(model)
-        self.context = context if context is not None else open_context()
-        make_current(self.context)
-        self._witness = Witness(self.context)
-        self._aside = self.context.framebuffer([self.context.renderbuffer((1, 1), 4)])
+        self._ownership = Ownership(context)
+        self._finalizer = weakref.finalize(self, self._ownership.abandon)
+        self._finalizer.atexit = False  # the system takes everything back then
+        self.context = self._ownership.context
         self._targets: dict[tuple[tuple[int, int], int], Targets] = {}
-        self._frame = self.context.buffer(reserve=_FRAME_BYTES)
+        with self._ownership.current():
+            self._build(self._ownership.maker)
+
+    @shader_names()
+    def _build(self, context: Any) -> None:
+        """Hand to the GPU what stays the same in all pictures."""
+        model = self.model
+        self._lost = LostContextCheck(context)
+        self._aside = context.framebuffer([context.renderbuffer((1, 1), 4)])
+        self._frame = context.buffer(reserve=_FRAME_BYTES)
         rng = np.random.default_rng(_SEED)
-        self._noise = self.context.texture3d((SIDE,) * 3, 4, noise_volume(rng).tobytes())
-        self._picture = skin_texture(self.context, self.look)
-        self._programs = Programs(self.context, textured=self._picture is not None)
-        self._screens = {name: self.context.vertex_array(self._programs[name], []) for name in ("background", "copy")}
+        self._noise = context.texture3d((SIDE,) * 3, 4, noise_volume(rng).tobytes())
+        self._picture = skin_texture(context, self.look)
+        self._programs = Programs(context, textured=self._picture is not None)
+        self._screens = {name: context.vertex_array(self._programs[name], []) for name in ("background", "copy")}
         lips = model.derived("view.fine_lips", lambda face: FineLips(face, _LIP_CUTS))
-        self._fields = SkinFields(self.context, model, lips)
-        self._wrinkles = WrinkleAtlas(self.context, model, unit(self.look.lights.key.towards), rng)
+        self._fields = SkinFields(context, model, lips)
+        self._wrinkles = WrinkleAtlas(context, model, unit(self.look.lights.key.towards), rng)
         normals, hair = model.normals, self.look.hair
-        self._head_hair = None if hair.style == "none" else HeadHair(self.context, self._programs, model, hair)
-        self._shadow = KeyShadow(self.context, self._programs.depth, model)
-        self._meshes = SkinMeshes(self.context, model, lips, self._dressed(normals))
+        self._head_hair = None if hair.style == "none" else HeadHair(context, self._programs, model, hair)
+        self._shadow = KeyShadow(context, self._programs.depth, model)
+        self._meshes = SkinMeshes(context, model, lips, self._dressed(normals))
         self._skins: dict[tuple[str, int], Skin] = {}
-        self._mouth = Mouth(self.context, self._programs["part"], model)
-        self._eyes = [Eyeball(self.context, self._programs["eye"], model, side) for side in SIDES]
-        self._shirt = _shirt(self.context, self._programs["cloth"], model)
+        self._mouth = Mouth(context, self._programs["part"], model)
+        self._eyes = [Eyeball(context, self._programs["eye"], model, side) for side in SIDES]
+        self._shirt = _shirt(context, self._programs["cloth"], model)
         self._linings = [
-            AnchoredArray(self.context, self._programs["lining"], mesh, model.vertices) for mesh in eye_linings(model)
+            AnchoredArray(context, self._programs["lining"], mesh, model.vertices) for mesh in eye_linings(model)
         ]
         grown = model.derived(
             f"view.brows.{stamp_of((), repr(hair))}",
             lambda face: (brow_hairs(face, normals, hair, rng), lash_hairs(face, normals, hair, rng)),
         )
         self._hairs = [
-            HairArray(self.context, self._programs["ribbon"], hairs, softness)
+            HairArray(context, self._programs["ribbon"], hairs, softness)
             for hairs, softness in zip(grown, _SOFTNESSES, strict=True)
         ]
         front = float(model.landmarks["upper_lip_middle"][2])
         self._programs.wear(self.look)
         self._programs.set({"mouth_front": front, "atlas_height": self._wrinkles.height, "iris_radius": _IRIS_RADIUS})
+
+    def current(self) -> AbstractContextManager[None]:
+        """A block in which several pictures are drawn with no change of contexts between them.
+
+        It ends with the context current that was so before. Raises GraphicsError as :meth:`render`.
+        """
+        return self._ownership.current()
+
+    def close(self) -> None:
+        """Give back to the driver what was taken from it; it cannot draw any more. A second time does nothing.
+
+        Without it, that happens when the renderer is collected; but in a ``context`` that was given everything then
+        waits for its owner's ``context.gc()``.
+        """
+        self._finalizer.detach()
+        self._ownership.release()
+        self._targets.clear()
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
 
     def render(
         self,
@@ -115,14 +154,14 @@ class Renderer:
             alpha: leave the background out: ``(height, width, 4)`` with straight (not premultiplied) alpha.
 
         Raises InvalidValueError for a wrong size, UnknownNameError for an unknown view or quality, GraphicsError when
-        the driver has lost the context.
+        the driver has lost the context, in a child forked after the parent had drawn, and after :meth:`close`.
         """
-        make_current(self.context)
-        targets = self._targets_for(size, quality)
-        self.draw(geometry, targets, camera, quality, alpha=alpha)
-        finish(self.context)
-        picture = targets.read(alpha=alpha)
-        self._witness.check()
+        with self._ownership.current():
+            targets = self._targets_for(size, quality)
+            self.draw(geometry, targets, camera, quality, alpha=alpha)
+            finish(self.context)
+            picture = targets.read(alpha=alpha)
+            self._lost.check()
         return picture
 
     @shader_names()
@@ -137,13 +176,23 @@ class Renderer:
         alpha: bool = False,
     ) -> None:
         """Draw into the picture of ``targets``, and copy it to the framebuffer ``onto``; ``alpha``: no background."""
+        with self._ownership.current():
+            self._draw(geometry, targets, camera, quality, alpha=alpha)
+            if onto is not None:
+                onto.use()
+                targets.light.use(0)
+                self._screens["copy"].render(self.context.TRIANGLES, 3)
+
+    def _draw(
+        self, geometry: FaceGeometry, targets: Targets, camera: Camera | str, quality: str, *, alpha: bool
+    ) -> None:
         import moderngl
 
         context, detail = self.context, quality_named(quality)
         seen_from = named_view(self.model, camera) if isinstance(camera, str) else camera
+        self.upload_skin(geometry)
         self._frame.write(pack_frame(seen_from, targets.size, geometry.head, self.look.lights))
         self._frame.bind_to_uniform_block(FRAME_BINDING)
-        self.upload_skin(geometry)
         self._fields.texture.use(0)
         self._noise.use(1)
         self._wrinkles.texture.use(3)
@@ -182,23 +231,21 @@ class Renderer:
         if targets.samples:
             finish(context)
             context.copy_framebuffer(targets.picture, targets.scene)
-        if onto is not None:
-            onto.use()
-            targets.light.use(0)
-            self._screens["copy"].render(moderngl.TRIANGLES, 3)
 
     @cached_property
     def _pores(self) -> Any:
         volume = pores.pore_volume(np.random.default_rng(_SEED))
-        return self.context.texture3d((pores.SIDE,) * 3, 4, volume.tobytes())
+        return self._ownership.maker.texture3d((pores.SIDE,) * 3, 4, volume.tobytes())
 
     def upload_skin(self, geometry: FaceGeometry) -> None:
         """Hand the skin of the frame to the GPU; ``draw`` does it itself."""
-        self._fields.update(geometry)
+        with self._ownership.current():
+            self._fields.update(geometry)
 
     def upload_wrinkles(self, geometry: FaceGeometry) -> None:
         """Hand its wrinkles to the GPU; ``draw`` does it itself."""
-        self._wrinkled = self._wrinkles.update(geometry.wrinkle_levels)
+        with self._ownership.current():
+            self._wrinkled = self._wrinkles.update(geometry.wrinkle_levels)
 
     def _begin(self, targets: Targets) -> None:
         """Let a software driver begin with what it has been told: it waits until another picture is drawn into."""
@@ -247,7 +294,7 @@ class Renderer:
 
     def _lit_at_rest(self, normals: Floats) -> Floats:
         model, lights = self.model, self.look.lights
-        geometry = FaceGeometry.at_rest(model.vertices, normals)
+        geometry = FaceGeometry.at_rest(model.vertices, normals, len(model.trains))
         self._frame.write(pack_frame(named_view(model, "front"), (1, 1), geometry.head, lights))
         self._frame.bind_to_uniform_block(FRAME_BINDING)
         self._fields.update(geometry)
@@ -275,11 +322,16 @@ class Renderer:
 
     def _targets_for(self, size: tuple[int, int], quality: str) -> Targets:
         key = checked_size(size), quality_named(quality).samples
-        if key not in self._targets:
-            if len(self._targets) >= 4:
-                self._targets.pop(next(iter(self._targets))).release()
-            self._targets[key] = Targets.make(self.context, *key)
-        return self._targets[key]
+        targets = self._targets.pop(key, None)
+        if targets is None:
+            spare = _SPARE_PIXELS
+            for other in reversed(list(self._targets)):  # what was drawn last may soon be wanted again
+                spare -= other[0][0] * other[0][1] * max(other[1], 1)
+                if spare < 0:
+                    self._targets.pop(other).release()
+            targets = Targets.make(self._ownership.maker, *key)
+        self._targets[key] = targets
+        return targets
 
 
 def _shirt(context: Any, program: Any, model: HeadModel) -> RigidPart:

@@ -31,9 +31,10 @@ class Capture:
         write_picture: Callable[[Path, Bytes], None],
         open_film: Callable[[Path, tuple[int, int], float], FilmWriter],
         say: Callable[[str], object] = print,
-        folder: Path = Path(),
+        folder: str | Path = Path(),
         now: Callable[[], datetime] = datetime.now,
     ) -> None:
+        folder = Path(folder)
         self._write_picture, self._open_film, self._say = write_picture, open_film, say
         self._folder, self._now = folder, now
         self._film: FilmWriter | None = None

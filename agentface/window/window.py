@@ -41,6 +41,10 @@ _AWAKE_S = 1.0
 _NO_GLFW = """expected the Python package glfw, got none.
 Install the window's extra:  pip install "agentface[window]"
 Pictures and films need no window: see `agentface render --help`."""
+_GLFW_DOES_NOT_LOAD = """expected the Python package glfw to load, got: {reason}.
+It is installed, but lacks a part of itself or a library of the system; on Debian and Ubuntu libglfw3 brings those.
+Pictures and films need no window: see `agentface render --help`."""
+_REINSTALL = 'pip install --force-reinstall "agentface[window]"'
 _NO_DISPLAY = """expected a display for the window, got: {reason}.
 Start it inside a desktop session, set DISPLAY, or use a virtual one:  xvfb-run agentface show
 Pictures and films need no display: see `agentface render --help`."""
@@ -321,7 +325,9 @@ def _missing_panel() -> str:
     early = "glfw" in sys.modules and "imgui_bundle" not in sys.modules
     try:
         import imgui_bundle  # noqa: F401  # before glfw, which then loads the library that it has, too
-    except ModuleNotFoundError:
+    except ModuleNotFoundError as error:
+        if error.name != "imgui_bundle":
+            return _NO_PANEL.format(reason=f"imgui-bundle lacks the Python package {error.name}", advice=_REINSTALL)
         return _NO_PANEL.format(reason="imgui-bundle is not installed", advice='pip install "agentface[window]"')
     except ImportError as error:
         return _NO_PANEL.format(reason=f"imgui-bundle does not load: {error}", advice="install what it lacks")
@@ -334,6 +340,7 @@ def _glfw() -> Any:
     try:
         import glfw
     except ImportError as error:
-        raise GraphicsError(_NO_GLFW) from error
+        missing = isinstance(error, ModuleNotFoundError) and error.name == "glfw"
+        raise GraphicsError(_NO_GLFW if missing else _GLFW_DOES_NOT_LOAD.format(reason=error)) from error
     glfw.ERROR_REPORTING = "ignore"
     return glfw

@@ -1,12 +1,16 @@
 """What every face that ships must be."""
 
+import copy
+import dataclasses
 import json
+import pickle
 import struct
 from itertools import pairwise
 
 import numpy as np
 import pytest
 
+from agentface.head.look import load_look
 from agentface.head.regions import REGIONS, SUB_REGIONS
 from agentface.resources import face_folder, face_names
 from tests.heads import head_model
@@ -168,3 +172,17 @@ def test_a_muscle_moves_only_its_regions(model):
             allowed &= ~model.regions.mask(row.not_regions)
         assert reach[~allowed].max() == 0.0
         assert reach[allowed].max() > 0.9
+
+
+@pytest.mark.parametrize("through", [lambda model: pickle.loads(pickle.dumps(model)), copy.deepcopy])  # noqa: S301
+def test_a_model_and_a_look_are_pickled_and_copied_whole(model, through):
+    again = through(model)
+    for field in dataclasses.fields(model):
+        first, second = getattr(model, field.name), getattr(again, field.name)
+        if isinstance(first, np.ndarray):
+            np.testing.assert_array_equal(first, second)
+    assert again.muscles.names == model.muscles.names
+    assert len(again.trains) == len(model.trains)
+    assert (again.eyes, again.lips, again.regions.ranges) == (model.eyes, model.lips, model.regions.ranges)
+    look = load_look(model)
+    assert through(look) == look

@@ -22,7 +22,6 @@ from agentface.errors import DataError
 from agentface.head.look import load_look, read_look
 from agentface.head.skin_image import bled, skin_image
 from agentface.head.texture_file import read_texture
-from agentface.mesh.normals import vertex_normals
 from agentface.resources import face_folder
 from agentface.view.renderer import Renderer
 from agentface.view.skin.template import skin_template
@@ -355,12 +354,12 @@ def test_a_worn_picture_shows_where_its_coordinates_say(tmp_path, quality):
     half = np.zeros((64, 64, 4), np.uint8)
     half[:, :32] = (20, 40, 200, 255)  # the person's right
     Image.fromarray(half).save(tmp_path / "half.png")
-    geometry = FaceGeometry.at_rest(model.vertices, vertex_normals(model.vertices, model.triangles))
+    geometry = FaceGeometry.at_rest(model.vertices, model.normals, len(model.trains))
     pictures = []
     for look in (load_look(model), read_look(look_with(tmp_path / "worn", tmp_path / "half.png"))):
         renderer = Renderer(model, look)
         pictures.append(renderer.render(geometry, (160, 120), "front", quality).astype(int))
-        renderer.context.release()
+        renderer.close()
     plain, painted = pictures
     right, left = np.s_[62:70, 60:68], np.s_[62:70, 92:100]  # cheeks
     assert (painted[right][..., 2] > painted[right][..., 0] + 40).all()

@@ -32,11 +32,16 @@ def face(tmp_path):
 def textured(face, coordinates):
     """Give the face these texture coordinates; the document, to be changed further."""
     meshes = read_glb(face / "head.glb")
-    meshes["skin"].attributes["TEXCOORD_0"] = coordinates
+    vertices = len(meshes["skin"].attributes["POSITION"])
+    meshes["skin"].attributes["TEXCOORD_0"] = np.resize(coordinates, (vertices, *coordinates.shape[1:]))
     write_glb(face / "head.glb", meshes, "test")
     document = pygltflib.GLTF2().load_binary(str(face / "head.glb"))
     (skin,) = [mesh for mesh in document.meshes if mesh.name == "skin"]
-    return document, document.accessors[skin.primitives[0].attributes.TEXCOORD_0]
+    accessor = document.accessors[skin.primitives[0].attributes.TEXCOORD_0]
+    if len(coordinates) != vertices:
+        accessor.count = len(coordinates)
+        document.save_binary(str(face / "head.glb"))
+    return document, accessor
 
 
 def some_coordinates():

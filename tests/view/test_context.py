@@ -1,3 +1,5 @@
+import sys
+
 import numpy as np
 import pytest
 
@@ -117,6 +119,15 @@ def test_without_opengl_the_error_names_the_packages(monkeypatch):
 
 
 @pytest.mark.slow
+@pytest.mark.parametrize("package", ["moderngl", "glcontext.egl"])
+def test_a_missing_package_is_not_blamed_on_the_system(monkeypatch, package):
+    monkeypatch.setitem(sys.modules, package, None)
+    with pytest.raises(GraphicsError, match=rf"Python packages moderngl and glcontext.*{package}") as caught:
+        open_context()
+    assert "pip install" in str(caught.value)
+    assert "apt-get" not in str(caught.value)
+
+
 @pytest.mark.gl
 def test_faces_in_turn_each_draw_in_their_own_context():
     faces = [Face(name, compiled=False) for name in ("amber", "onyx")]

@@ -19,14 +19,14 @@ def shown(model, **shapes):
     vertices = model.vertices.copy()
     for name, weight in shapes.items():
         vertices += np.float32(weight) * model.shapes[name].dense(len(vertices))
-    return FaceGeometry.at_rest(vertices, vertex_normals(vertices, model.triangles))
+    return FaceGeometry.at_rest(vertices, vertex_normals(vertices, model.triangles), len(model.trains))
 
 
 @pytest.fixture(scope="module", params=["amber", "onyx"])
 def renderer(request):
     renderer = Renderer(head_model(request.param))
     yield renderer
-    renderer.context.release()
+    renderer.close()
 
 
 @pytest.fixture(scope="module")
@@ -70,7 +70,7 @@ def test_two_pictures_are_the_same_to_the_byte(renderer):
     np.testing.assert_array_equal(renderer.render(geometry, SIZE), first)
     other = Renderer(renderer.model)
     np.testing.assert_array_equal(other.render(geometry, SIZE), first)
-    other.context.release()
+    other.close()
 
 
 def test_the_top_row_comes_first_and_the_left_of_the_person_is_right(renderer):
@@ -142,10 +142,13 @@ def test_wrong_names_and_meshes_are_refused(renderer):
         renderer.render(shown(renderer.model), SIZE, "back")
     with pytest.raises(UnknownNameError, match="portrait"):
         renderer.render(shown(renderer.model), SIZE, quality="best")
-    geometry = shown(renderer.model)
-    geometry.vertices = geometry.vertices[:-1]
-    with pytest.raises(InvalidValueError, match=r"geometry\.vertices"):
-        renderer.render(geometry, SIZE)
+    for name in ("vertices", "smooth_normals", "wrinkles", "wrinkle_levels", "eye_rotations", "jaw", "head"):
+        geometry = shown(renderer.model)
+        array = getattr(geometry, name)
+        for wrong in (array[:-1], array[None], array[:0]):
+            setattr(geometry, name, wrong)
+            with pytest.raises(InvalidValueError, match=rf"geometry\.{name}: expected an array of shape"):
+                renderer.render(geometry, SIZE)
 
 
 def test_odd_and_small_sizes(renderer):
@@ -156,7 +159,13 @@ def test_odd_and_small_sizes(renderer):
 def test_many_sizes_do_not_pile_up(renderer):
     for side in range(20, 40):
         renderer.render(shown(renderer.model), (side, side))
-    assert len(renderer._targets) <= 4
+    assert len(renderer._targets) >= 20, "small ones are kept"
+    renderer.render(shown(renderer.model), (640, 640))
+    for side in range(600, 603):
+        renderer.render(shown(renderer.model), (side, side))
+    kept = [size[0] * size[1] * max(samples, 1) for size, samples in list(renderer._targets)[:-1]]
+    assert sum(kept) <= 400_000
+    assert (602, 602) in [size for size, _ in renderer._targets]
 
 
 def test_looks_are_checked(tmp_path, renderer):

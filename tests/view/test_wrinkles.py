@@ -5,6 +5,7 @@ import pytest
 from scipy.ndimage import binary_dilation
 
 from agentface.deform.geometry import FaceGeometry
+from agentface.errors import InvalidValueError
 from agentface.head.trains import heights
 from agentface.mesh.normals import vertex_normals
 from agentface.view.camera import named_view
@@ -19,9 +20,8 @@ SIZE = (320, 240)
 
 @pytest.fixture(scope="module", params=["amber", "onyx"])
 def renderer(request):
-    renderer = Renderer(head_model(request.param))
-    yield renderer
-    renderer.context.release()
+    with Renderer(head_model(request.param)) as renderer, renderer.current():
+        yield renderer
 
 
 def at_rest(model, **levels):
@@ -167,7 +167,7 @@ def test_deeper_wrinkles_change_the_picture_more(renderer):
     assert gaps[0] < gaps[1] < gaps[2]
 
 
-def test_a_geometry_of_a_face_without_trains_is_drawn_smooth(renderer):
-    model = renderer.model
-    plain = FaceGeometry.at_rest(model.vertices, vertex_normals(model.vertices, model.triangles))
-    np.testing.assert_array_equal(renderer.render(plain, SIZE), renderer.render(at_rest(model), SIZE))
+def test_levels_of_other_trains_are_refused(renderer):
+    for wrong in (len(renderer.model.trains) - 1, 0):
+        with pytest.raises(InvalidValueError, match=r"geometry\.wrinkle_levels: expected an array of shape"):
+            renderer._wrinkles.update(np.ones(wrong, np.float32))

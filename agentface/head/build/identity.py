@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from difflib import get_close_matches
+from pathlib import Path
 from typing import Annotated
 
 import numpy as np
 from pydantic import Field
 
-from agentface.config import Table
+from agentface.config import Document, Table
 from agentface.conventions import Doubles
 from agentface.head.build.fold import LidFold
 from agentface.head.build.partition import Loops, halves
@@ -41,6 +43,43 @@ class Recipe(Table):
     asymmetry: dict[str, Weight] = {}
 
 
+def read_recipe(path: str | Path, mesh: BaseMesh) -> Recipe:
+    """The recipe at ``path``; raises DataError with every fault, also of names that the mesh does not have."""
+    document = Document(path)
+    recipe = document.collect(Recipe)
+    if recipe is not None:
+        _check_names(document, recipe, mesh)
+    document.check()
+    assert recipe is not None, "a document without faults is parsed"  # noqa: S101 - for the type checker
+    return recipe
+
+
+def _check_names(document: Document, recipe: Recipe, mesh: BaseMesh) -> None:
+    targets, units = mesh.target_names, set(mesh.face_units())
+    for table, names, known, what in (
+        ("ancestry", recipe.ancestry, {"african", "asian", "caucasian"}, "one of african, asian, caucasian"),
+        ("targets", recipe.targets, targets, "a target of the base mesh"),
+        ("resting_shapes", recipe.resting_shapes, units, "one of the 52 shapes"),
+        ("asymmetry", recipe.asymmetry, targets, "a target of the base mesh"),
+    ):
+        for name in names:
+            if not known.issuperset(_both_sides(name) if table == "targets" else (name,)):
+                near = get_close_matches(name, {*known, *(_either_side(target) for target in known)}, n=3)
+                hint = f"did you mean {' or '.join(near)}?" if near else ""
+                document.fault((table, name), what, repr(name), hint)
+
+
+def _both_sides(name: str) -> tuple[str, ...]:
+    """The targets that a name in a recipe stands for: two for ``eyes/lr-eye-scale-incr``."""
+    folder, _, leaf = name.partition("/")
+    return tuple(f"{folder}/{side}-{leaf.removeprefix('lr-')}" for side in "lr") if leaf.startswith("lr-") else (name,)
+
+
+def _either_side(target: str) -> str:
+    folder, _, leaf = target.partition("/")
+    return f"{folder}/lr-{leaf[2:]}" if leaf.startswith(("l-", "r-")) else target
+
+
 def person(mesh: BaseMesh, recipe: Recipe) -> Doubles:
     """The base vertices ``(N, 3)`` of the person, in decimetres, before the lips are closed."""
     positions = mesh.positions.copy()
@@ -56,10 +95,8 @@ def person(mesh: BaseMesh, recipe: Recipe) -> Doubles:
             ideal = f"macrodetails/proportions/{gender}-{age}-averagemuscle-averageweight-idealproportions"
             positions += share * recipe.ideal * mesh.target(ideal)
     for name, part in recipe.targets.items():
-        folder, _, leaf = name.partition("/")
-        for side in "lr" if leaf.startswith("lr-") else ("",):
-            full = f"{folder}/{side}-{leaf.removeprefix('lr-')}" if side else name
-            positions += part * mesh.target(full)
+        for target in _both_sides(name):
+            positions += part * mesh.target(target)
     for name, part in recipe.resting_shapes.items():
         positions += part * mesh.face_unit(name)
     return 0.5 * (positions + (positions * [-1, 1, 1])[mesh.mirror])

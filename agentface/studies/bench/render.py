@@ -39,8 +39,12 @@ def run(model: HeadModel | None = None, rounds: int = 15, sizes: tuple[tuple[int
         from agentface.head.model import load_model
 
         model = load_model()
-    renderer, deformer = _Renderer(model), GeometricDeformer(model)
-    stages = _Stages(renderer.context)
+    with _Renderer(model) as renderer, renderer.current():
+        return _measure(renderer, model, sizes, rounds)
+
+
+def _measure(renderer: _Renderer, model: HeadModel, sizes: tuple[tuple[int, int], ...], rounds: int) -> dict[str, Any]:
+    deformer, stages = GeometricDeformer(model), _Stages(renderer.context)
     targets = {
         (name, size): Targets.make(renderer.context, size, quality.samples)
         for size in sizes
@@ -68,7 +72,6 @@ def run(model: HeadModel | None = None, rounds: int = 15, sizes: tuple[tuple[int
         figures["frames_hz"] = 1e3 / figures["frame_ms"]
         figures["frame_to_floor_ratio"] = figures["frame_ms"] / floor[_name(size)]["frame_ms"]
         report[quality][_name(size)] = figures
-    renderer.context.release()
     return report
 
 

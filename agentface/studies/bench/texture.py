@@ -87,7 +87,7 @@ def _drawn(model: HeadModel, rounds: int, size: tuple[int, int]) -> dict[str, An
             "worn_to_plain_ratio": costs["worn_cpu_ms"] / costs["plain_cpu_ms"],
         }
     for renderer in renderers.values():
-        renderer.context.release()
+        renderer.close()
     return report
 
 

@@ -66,8 +66,9 @@ class ActionUnit:
         return sum(parts, 0 * model.vertices)
 
 
-def load_action_units(path: Path | None = None) -> dict[int, ActionUnit]:
+def load_action_units(path: str | Path | None = None) -> dict[int, ActionUnit]:
     """The table at ``path``, or the one that comes with agentface; raises DataError with all faults."""
+    path = None if path is None else Path(path)
     document = Document(path or rules_file("action_units.yaml"))
     file = document.parse(ActionUnitsFile)
     for number, row in file.action_units.items():

@@ -8,11 +8,13 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cache
+from importlib import import_module
 from pathlib import Path
 from typing import Any, NoReturn
 
 from agentface.errors import GraphicsError
 from agentface.resources import data_folder
+from agentface.view.gl.current import kept_api
 
 _INCLUDE = re.compile(r'^\s*#include\s+"([^"]+)"\s*$')
 # Mesa: "2:13(5): error", NVIDIA: "2(13) : error", others: "ERROR: 2:13:"
@@ -24,28 +26,37 @@ On Debian and Ubuntu install the Debian packages libegl1 and libgl1 (Mesa's soft
     apt-get install --no-install-recommends libegl1 libgl1
 Everything that makes no picture works without them."""
 
+_NO_PACKAGE = """expected the Python packages moderngl and glcontext, got: {reason}.
+Install agentface with what it needs:  pip install --force-reinstall agentface"""
+
 # What moderngl calls errors that it does not know is, of those there are, GL_CONTEXT_LOST.
 _LOST = {"GL_OUT_OF_MEMORY": "out of memory", "GL_UNKNOWN_ERROR": "the driver was reset"}
-_WITNESSED = b"\xff\x00\xff\xff"
+_KNOWN = b"\xff\x00\xff\xff"
 
 
 def open_context() -> Any:
     """A headless ``moderngl.Context`` (OpenGL 3.3 core, through EGL).
 
-    Raises GraphicsError, naming the packages to install, when the machine has no OpenGL.
+    It is left current. Raises GraphicsError that names the system's packages to install when the machine has no OpenGL,
+    or the Python package that does not load.
     """
-    import moderngl
+    try:
+        import moderngl
 
+        import_module("glcontext.egl")
+    except ImportError as error:
+        raise GraphicsError(_NO_PACKAGE.format(reason=error)) from error
+    store = getattr(moderngl, "_store", None)
+    default = getattr(store, "default_context", None)  # what moderngl.get_context() gives the program that we are in
     try:
         settings: Any = {"standalone": True, "backend": "egl", "require": 330}
-        return moderngl.create_context(**settings)
+        with kept_api():
+            return moderngl.create_context(**settings)
     except Exception as error:  # the loader raises whatever the system's libraries gave it
         raise GraphicsError(_NO_EGL.format(reason=str(error).strip() or type(error).__name__)) from error
-
-
-def make_current(context: Any) -> None:
-    """Let OpenGL draw in ``context`` from now on, also when another face's has become the current one since."""
-    context.__enter__()  # its __exit__ would leave no context current, not the one before
+    finally:
+        if store is not None:
+            store.default_context = default
 
 
 @cache
@@ -66,7 +77,7 @@ def finish(context: Any) -> None:
     (wait or context.finish)()
 
 
-class Witness:
+class LostContextCheck:
     """One pixel of a known colour. With the context lost, reading a picture gives what lay in memory, and no error."""
 
     def __init__(self, context: Any) -> None:
@@ -78,12 +89,12 @@ class Witness:
         """Raise GraphicsError when what was drawn until now is lost."""
         seen = bytearray(4)
         self._pixel.read_into(seen, components=4, alignment=1)
-        reason = "" if seen == _WITNESSED else "the driver lost its context"
+        reason = "" if seen == _KNOWN else "the driver lost its context"
         reason = _LOST.get(self._context.error, reason)
         if reason:
             raise GraphicsError(
                 f"the picture: expected OpenGL to have drawn it, got: {reason};"
-                " ask for a smaller picture, draw in the thread that drew first, or start the program again"
+                " ask for a smaller picture, or start the program again"
             )
 
 
@@ -104,13 +115,14 @@ class ShaderSource:
         return _PLACE.sub(place, log)
 
 
-def read_source(name: str, folder: Path | None = None, defines: tuple[str, ...] = ()) -> ShaderSource:
+def read_source(name: str, folder: str | Path | None = None, defines: tuple[str, ...] = ()) -> ShaderSource:
     """The shader ``name`` from ``shaders/`` (or ``folder``); each ``#include "x.glsl"`` is put in once.
 
     ``defines`` are defined for the preprocessor behind the line ``#version``.
 
     Raises GraphicsError with file and line for a file that cannot be read.
     """
+    folder = None if folder is None else Path(folder)
     root = folder or data_folder("shaders")
     files: list[Path] = []
     lines = _lines(root / name, files, "this shader")
@@ -158,12 +170,13 @@ def shader_names() -> Iterator[None]:
 
 
 def compile_program(
-    context: Any, vertex: str, fragment: str | None, folder: Path | None = None, defines: tuple[str, ...] = ()
+    context: Any, vertex: str, fragment: str | None, folder: str | Path | None = None, defines: tuple[str, ...] = ()
 ) -> Any:
     """The ``moderngl.Program`` of two files of ``shaders/``; without ``fragment`` it writes depth only.
 
     Raises GraphicsError with the compiler's messages, each with its file and line.
     """
+    folder = None if folder is None else Path(folder)
     import moderngl
 
     sources = [read_source(vertex, folder, defines)]

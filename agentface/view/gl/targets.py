@@ -19,7 +19,8 @@ class Targets:
 
     ``wanted`` samples a pixel were asked for, ``samples`` are had. ``scene`` is what is drawn into (``picture`` itself
     where there is one sample), ``picture`` the finished bytes, ``light`` their texture, ``backdrop`` what is behind
-    the face once ``painted``, ``pixels (height, width, 4)`` what was read last, the bottom row first.
+    the face once ``painted``, ``buffers`` what else they are made of, ``pixels (height, width, 4)`` what was read
+    last, the bottom row first.
     """
 
     size: tuple[int, int]
@@ -29,6 +30,7 @@ class Targets:
     picture: Any
     light: Any
     backdrop: Any
+    buffers: tuple[Any, ...]
     pixels: Bytes
     painted: bool = False
 
@@ -39,18 +41,20 @@ class Targets:
 
         wanted, samples = samples, min(samples, int(context.max_samples))
         try:
-            light = context.texture(size, 4)
-            picture = context.framebuffer([light], None if samples else context.depth_renderbuffer(size))
-            scene = picture
+            light, behind = context.texture(size, 4), context.renderbuffer(size, 4)
+            depth = context.depth_renderbuffer(size, samples=samples)
+            buffers = [depth, behind]
+            picture = scene = context.framebuffer([light], None if samples else depth)
             if samples:
-                colour = context.renderbuffer(size, 4, samples=samples)
-                scene = context.framebuffer([colour], context.depth_renderbuffer(size, samples=samples))
-            backdrop = context.framebuffer([context.renderbuffer(size, 4)])
+                buffers.append(context.renderbuffer(size, 4, samples=samples))
+                scene = context.framebuffer([buffers[-1]], depth)
+            backdrop = context.framebuffer([behind])
         except moderngl.Error as error:
             raise GraphicsError(
                 f"a picture of {size[0]}x{size[1]} pixels: expected the driver to hold it, got: {error}"
             ) from error
-        return cls(size, wanted, samples, scene, picture, light, backdrop, np.empty((size[1], size[0], 4), np.uint8))
+        pixels = np.empty((size[1], size[0], 4), np.uint8)
+        return cls(size, wanted, samples, scene, picture, light, backdrop, tuple(buffers), pixels)
 
     def read(self, *, alpha: bool = False) -> Bytes:
         """The picture ``(height, width, 3)``, the top row first; ``alpha``: 4, straight."""
@@ -69,8 +73,8 @@ class Targets:
 
     def release(self) -> None:
         """Give the memory back."""
-        for item in {id(item): item for item in (self.scene, self.picture, self.light, self.backdrop)}.values():
-            item.release()
+        for item in (self.scene, self.picture, self.backdrop, self.light, *self.buffers):
+            item.release()  # a second time, where scene and picture are one, does nothing
 
 
 def checked_size(size: Any) -> tuple[int, int]:

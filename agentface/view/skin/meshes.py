@@ -28,6 +28,8 @@ class SkinFields:
 
     def __init__(self, context: Any, model: HeadModel, lips: FineLips) -> None:
         self.count, self._lips = len(model.vertices), lips
+        rest = FaceGeometry.at_rest(model.vertices, model.normals, len(model.trains))
+        self._shapes = {name: array.shape for name, array in rest.arrays()._asdict().items()}
         rows = -(-(self.count + lips.count) // _COLUMNS)
         self._texels = np.zeros((2, rows * _COLUMNS, 4), np.float32)
         self.texture = context.texture((_COLUMNS, 2 * rows), 4, dtype="f4")
@@ -35,12 +37,9 @@ class SkinFields:
 
     def update(self, geometry: FaceGeometry) -> None:
         """Upload a frame; raises InvalidValueError for a geometry of another mesh."""
-        expected = (self.count, 3)
-        for name in ("vertices", "smooth_normals"):
-            if getattr(geometry, name).shape != expected:
-                raise InvalidValueError(
-                    f"geometry.{name}", f"an array of shape {expected}", getattr(geometry, name).shape
-                )
+        for name, shape in self._shapes.items():
+            if getattr(geometry, name).shape != shape:
+                raise InvalidValueError(f"geometry.{name}", f"an array of shape {shape}", getattr(geometry, name).shape)
         self._texels[0, : self.count, :3] = geometry.vertices
         self._texels[0, : self.count, 3] = geometry.wrinkles
         self._texels[1, : self.count, :3] = geometry.smooth_normals

@@ -11,7 +11,8 @@ from agentface.head.look import Look
 from agentface.head.model import HeadModel
 from agentface.head.skin_image import bled
 from agentface.head.unwrap import unwrap_centre
-from agentface.view.gl.context import compile_program, open_context
+from agentface.view.gl.context import compile_program
+from agentface.view.gl.ownership import Ownership
 from agentface.view.skin.complexion import complexion
 from agentface.view.skin.shirt import uncovered
 
@@ -27,12 +28,12 @@ def skin_template(model: HeadModel, look: Look, size: int = 2048, context: Any =
 
     Raises GraphicsError when there is no OpenGL.
     """
-    opened = open_context() if context is None else context
+    ownership = Ownership(context)
     try:
-        drawn = _drawn(opened, model, look, size)
+        with ownership.current():
+            drawn = _drawn(ownership.maker, model, look, size)
     finally:
-        if context is None:
-            opened.release()
+        ownership.release()
     image = bled(drawn)
     image[..., 3] = _grown(drawn[..., 3], _MARGIN)
     return image

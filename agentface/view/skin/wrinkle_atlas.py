@@ -8,6 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from agentface.conventions import Doubles, Floats
+from agentface.errors import InvalidValueError
 from agentface.head.model import HeadModel
 from agentface.view.skin.wrinkle_patches import SIDE, Patch, Relief, patches
 
@@ -47,9 +48,12 @@ class WrinkleAtlas:
         self.texture.repeat_x = self.texture.repeat_y = False
 
     def update(self, levels: Floats) -> bool:
-        """Combine the trains at ``levels (K,)`` and upload them; false when nothing has risen."""
-        if len(levels) != len(self.patches):
-            levels = np.zeros(len(self.patches), np.float32)
+        """Combine the trains at ``levels (K,)`` and upload them; false when nothing has risen.
+
+        Raises InvalidValueError for levels of another number of trains.
+        """
+        if levels.shape != self._levels.shape:
+            raise InvalidValueError("geometry.wrinkle_levels", f"an array of shape {self._levels.shape}", levels.shape)
         if not np.array_equal(levels, self._levels):
             self._combine(levels)
         return bool(levels.any())
