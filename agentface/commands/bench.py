@@ -28,7 +28,11 @@ def bench(*, name: str | None, json_file: str | None, face: str, deformer: str) 
     if name is not None and name not in BENCHES:
         raise UnknownNameError("benchmark", name, tuple(BENCHES))
     face_folder(face)
-    figures = _measured(name, face) if name is not None else {each: _if_it_can(each, face) for each in BENCHES}
+    figures = (
+        _measured(name, face, deformer)
+        if name is not None
+        else {each: _if_it_can(each, face, deformer) for each in BENCHES}
+    )
     if json_file is not None:
         write_json(json_file, figures)
         return
@@ -36,18 +40,18 @@ def bench(*, name: str | None, json_file: str | None, face: str, deformer: str) 
         click.echo(f"{key:<48} {value:.4g}" if isinstance(value, float) else f"{key:<48} {value}")
 
 
-def _measured(name: str, face: str) -> dict[str, Any]:
+def _measured(name: str, face: str, deformer: str) -> dict[str, Any]:
     from agentface.studies.bench import BENCHES, run
 
     click.echo(f"measuring {BENCHES[name]} …", err=True)
-    return run(name, face)
+    return run(name, face, deformer)
 
 
-def _if_it_can(name: str, face: str) -> dict[str, Any]:
+def _if_it_can(name: str, face: str, deformer: str) -> dict[str, Any]:
     from agentface.errors import GraphicsError
 
     try:
-        return _measured(name, face)
+        return _measured(name, face, deformer)
     except GraphicsError as error:
         return {"not_run": " ".join(str(error).split())}
 

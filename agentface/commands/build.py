@@ -11,6 +11,7 @@ from pathlib import Path
 import click
 
 from agentface.commands.options import face_options
+from agentface.commands.streams import console
 from agentface.errors import DataError, InvalidValueError
 
 _BORROWED = ("muscles.yaml", "asymmetry.yaml", "look.yaml")
@@ -105,11 +106,10 @@ def _check(files: dict[str, bytes], folder: Path) -> None:
 @contextmanager
 def _steps() -> Iterator[Callable[[str], None]]:
     """A call that says what is done now; each step is shown with the time that it took."""
-    from rich.console import Console
     from rich.progress import Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
 
     columns = (SpinnerColumn(finished_text=" "), TextColumn("{task.description}"), TimeElapsedColumn())
-    with Progress(*columns, console=Console(stderr=True)) as progress:
+    with Progress(*columns, console=console()) as progress:
 
         def step(description: str) -> None:
             for task in progress.task_ids:

@@ -56,16 +56,16 @@ def calibrate(
     if table:
         if dry_run:
             raise click.UsageError("--table fits nothing, so there is nothing to try with --dry-run")
-        _measure([chosen] if chosen else None, output, json_file)
+        _measure([chosen] if chosen else None, deformer, output, json_file)
     elif output:
         raise click.UsageError("--output goes with --table; a fit is written to the face's own folder")
     elif not chosen:
         raise click.UsageError("expected the FACE to fit, or --table; for example agentface calibrate amber --dry-run")
     else:
-        _fit(chosen, starts, seed, dry_run, json_file)
+        _fit(chosen, deformer, starts, seed, dry_run, json_file)
 
 
-def _measure(faces: Sequence[str] | None, output: str | None, json_file: str | None) -> None:
+def _measure(faces: Sequence[str] | None, deformer: str, output: str | None, json_file: str | None) -> None:
     from agentface.head.model import load_model
     from agentface.resources import face_names
     from agentface.studies.calibration.action_units import load_action_units
@@ -75,11 +75,11 @@ def _measure(faces: Sequence[str] | None, output: str | None, json_file: str | N
     models = [load_model(face, asymmetry=0.0) for face in faces or face_names()]
     if json_file is not None:
         units = load_action_units()
-        write_json(json_file, {model.name: _figures(measure(model, units)) for model in models})
+        write_json(json_file, {model.name: _figures(measure(model, units, deformer)) for model in models})
     if output not in (None, "-"):
-        _renew(Path(str(output)), table(models))
+        _renew(Path(str(output)), table(models, deformer))
     elif output == "-" or json_file is None:
-        click.echo(table(models), nl=False)
+        click.echo(table(models, deformer), nl=False)
 
 
 def _renew(path: Path, table: str) -> None:
@@ -96,7 +96,7 @@ def _renew(path: Path, table: str) -> None:
     click.echo(f"{path}: table renewed")
 
 
-def _fit(face: str, starts: int, seed: int, dry_run: bool, json_file: str | None) -> None:
+def _fit(face: str, deformer: str, starts: int, seed: int, dry_run: bool, json_file: str | None) -> None:
     from agentface.head.model import load_model
     from agentface.head.muscles import read_muscles
     from agentface.io.files import check_writable, write_file
@@ -111,10 +111,10 @@ def _fit(face: str, starts: int, seed: int, dry_run: bool, json_file: str | None
     model = load_model(face, None if path.exists() else read_muscles(fitting.anatomy_file()), asymmetry=0.0)
     if not dry_run:
         check_writable(path)
-    before = measure(model, units)
+    before = measure(model, units, deformer)
     with _progress(starts) as progress:
         fitted = fitting.calibrate(face, starts, seed, progress)
-    after = measure(load_model(face, muscles=fitted, asymmetry=0.0), units)
+    after = measure(load_model(face, muscles=fitted, asymmetry=0.0), units, deformer)
     if json_file is not None:
         write_json(json_file, {"before": _figures(before), "after": _figures(after)})
     if json_file != "-":

@@ -37,6 +37,6 @@ def figures(*, names: tuple[str, ...], output: Path, face: str, deformer: str) -
     check_writable(output / "figure.png")
     for name in names or tuple(FIGURES):
         click.echo(f"{name}: {FIGURES[name]}")
-        for file, content in draw(face, (name,)):
+        for file, content in draw(face, (name,), deformer):
             write_file(output / file, content)
             click.echo(f"  {output / file}: {len(content) / 1024:.0f} kB")

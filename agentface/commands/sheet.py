@@ -17,6 +17,7 @@ from agentface.commands.options import (
     read_assignments,
     size,
 )
+from agentface.commands.streams import console
 
 if TYPE_CHECKING:
     from agentface.face import Face
@@ -79,7 +80,6 @@ def sheet(
     agentface sheet --pose 'kiss: orbicularis_oris_pucker=1' --pose 'sneer: disgust=0.4, jaw_open=0.1' -o sheet.png
     """  # noqa: D301 - \b is click's mark of lines to keep
     import numpy as np
-    from rich.console import Console
     from rich.progress import track
 
     from agentface.io.files import check_writable
@@ -95,7 +95,7 @@ def sheet(
     width = columns or (min(4, len(shown)) if poses else len(levels))
     check_sheet_size(size, len(shown), width)
     drawn = make_face(face, deformer, compiled=len(shown) > 4, look=look)
-    terminal = Console(stderr=True)
+    terminal = console()
     bar = track(shown, "drawing", console=terminal, transient=True, disable=not terminal.is_terminal)
     panels = [(drawn.render(size, camera, quality, pose=cell.pose(drawn)), cell.label, "") for cell in bar]
     write_picture(output, np.asarray(contact_sheet(panels, width)))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from contextlib import suppress
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, is_dataclass, replace
 from functools import cached_property, lru_cache
 from pathlib import Path
 from typing import Annotated, Any, TypeVar
@@ -180,6 +180,14 @@ class HeadModel:
             return np.ones(len(self.vertices), np.float32)
         return unwrap_cover(self.vertices, unwrap_centre(self.landmarks))
 
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, HeadModel):
+            return NotImplemented
+        return self is other or (type(self) is type(other) and _same_fields(self, other))
+
+    def __hash__(self) -> int:
+        return hash((self.name, self.vertices.tobytes()))
+
     def derived(self, name: str, make: Callable[[HeadModel], _T]) -> _T:
         """What ``make`` makes of this model, made once and kept under ``name``: with it, and for the next run.
 
@@ -195,6 +203,23 @@ class HeadModel:
     def eye_centre(self, side: str) -> Floats:
         """The centre ``(3,)`` m of the eyeball of side ``l`` or ``r``."""
         return _eye_centre(self.eyes, side) + self.part_moves[f"eye_{side}"]
+
+
+def _same_fields(one: Any, other: Any) -> bool:
+    return all(_same(getattr(one, field.name), getattr(other, field.name)) for field in fields(one))
+
+
+def _same(one: Any, other: Any) -> bool:
+    """Whether two values are equal, whatever arrays they are made of."""
+    if isinstance(one, np.ndarray):
+        return isinstance(other, np.ndarray) and one.dtype == other.dtype and np.array_equal(one, other)
+    if isinstance(one, dict):
+        return (
+            isinstance(other, dict) and one.keys() == other.keys() and all(_same(one[key], other[key]) for key in one)
+        )
+    if is_dataclass(one):
+        return type(one) is type(other) and _same_fields(one, other)
+    return bool(one == other)
 
 
 def load_model(

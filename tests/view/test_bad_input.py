@@ -15,7 +15,6 @@ from click.testing import CliRunner
 
 from agentface import resources
 from agentface.cli import cli
-from agentface.face import Face
 from agentface.view.renderer import Renderer
 
 SERVE = ("serve", "--osc", "127.0.0.1:0", "--duration", "0.3", "--fps", "10", "--record")
@@ -128,14 +127,14 @@ def test_an_output_that_is_a_folder(folder, tmp_path, call):
 @pytest.fixture
 def full_disk(monkeypatch):
     """From the first picture on, no file can be longer than 1 kB."""
-    limits, render = resource.getrlimit(resource.RLIMIT_FSIZE), Face.render
+    limits, render = resource.getrlimit(resource.RLIMIT_FSIZE), Renderer.render
 
     def fill(self, *arguments, **options):
         picture = render(self, *arguments, **options)
         resource.setrlimit(resource.RLIMIT_FSIZE, (1024, limits[1]))
         return picture
 
-    monkeypatch.setattr(Face, "render", fill)
+    monkeypatch.setattr(Renderer, "render", fill)
     yield
     resource.setrlimit(resource.RLIMIT_FSIZE, limits)
 

@@ -7,6 +7,7 @@ from inspect import signature
 from pathlib import Path
 from typing import Any
 
+from agentface.deform.protocol import DEFAULT_DEFORMER
 from agentface.errors import UnknownNameError
 from agentface.resources import DEFAULT_FACE
 
@@ -23,16 +24,18 @@ BENCHES: dict[str, str] = {
 """The benchmarks and what they compare; each is a module of this package with ``run() -> dict``."""
 
 
-def run(name: str, face: str | Path = DEFAULT_FACE) -> dict[str, Any]:
-    """The figures of one benchmark, units in the key names; on ``face`` where it needs one; raises UnknownNameError."""
+def run(name: str, face: str | Path = DEFAULT_FACE, deformer: str = DEFAULT_DEFORMER) -> dict[str, Any]:
+    """The figures of one benchmark, units in the key names; of ``face`` and ``deformer`` where it
+    has a choice; raises UnknownNameError.
+    """
     from agentface.head.model import load_model
 
     if name not in BENCHES:
         raise UnknownNameError("benchmark", name, tuple(BENCHES))
     bench = import_module(f"agentface.studies.bench.{name}").run
     parameters = signature(bench).parameters
+    options: dict[str, Any] = {"face": face, "deformer_name": deformer}
     if "model" in parameters:
-        figures: dict[str, Any] = bench(model=load_model(face, asymmetry=0.0))
-    else:
-        figures = bench(face=face) if "face" in parameters else bench()
+        options["model"] = load_model(face, asymmetry=0.0)
+    figures: dict[str, Any] = bench(**{name: value for name, value in options.items() if name in parameters})
     return figures

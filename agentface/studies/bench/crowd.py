@@ -9,6 +9,7 @@ import numpy as np
 
 from agentface.conventions import Floats
 from agentface.deform.crowd import Crowd
+from agentface.deform.protocol import DEFAULT_DEFORMER
 from agentface.parameters import PARAMETERS
 from agentface.studies.bench.timing import interleave
 
@@ -28,7 +29,12 @@ def random_poses(count: int, seed: int = 3) -> Floats:
     return np.clip(low + part * (high - low), low, high)
 
 
-def run(model: HeadModel | None = None, sizes: tuple[int, ...] = SIZES, faces: int = _FACES) -> dict[str, Any]:
+def run(
+    model: HeadModel | None = None,
+    sizes: tuple[int, ...] = SIZES,
+    faces: int = _FACES,
+    deformer_name: str = DEFAULT_DEFORMER,
+) -> dict[str, Any]:
     """For each number of faces and of threads: microseconds a face and faces a second, of whole frames in one call.
 
     Medians over interleaved rounds. ``one_to_two_threads_ratio`` is how many times faster two threads are; one face
@@ -38,7 +44,7 @@ def run(model: HeadModel | None = None, sizes: tuple[int, ...] = SIZES, faces: i
         from agentface.head.model import load_model
 
         model = load_model()
-    crowds = {threads: Crowd(model, threads) for threads in THREADS}
+    crowds = {threads: Crowd(model, threads, deformer=deformer_name) for threads in THREADS}
     report: dict[str, Any] = {"vertices": len(model.vertices)}
     for size in sizes:
         poses = random_poses(size)

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from agentface.deform.pipeline import GeometricDeformer
+from agentface.deform.protocol import DEFAULT_DEFORMER, make_deformer
 from agentface.mesh.normals_compiled import write_normals
 from agentface.parameters import PARAMETERS, FacePose
 from agentface.studies.bench.deform import SMILE
@@ -43,7 +44,9 @@ def densities(model: HeadModel, finest: int = FINEST) -> list[HeadModel]:
     return found
 
 
-def run(model: HeadModel | None = None, rounds: int = 200, finest: int = FINEST) -> dict[str, Any]:
+def run(
+    model: HeadModel | None = None, rounds: int = 200, finest: int = FINEST, deformer_name: str = DEFAULT_DEFORMER
+) -> dict[str, Any]:
     """Medians over interleaved rounds, in microseconds a frame, and their ratios.
 
     ``baseline`` is the weighted sum of 52 blendshapes of the same mesh as one float32 product (the faster of the two
@@ -57,13 +60,13 @@ def run(model: HeadModel | None = None, rounds: int = 200, finest: int = FINEST)
         from agentface.head.model import load_model
 
         model = load_model(asymmetry=0.0)
-    deformer, faces = GeometricDeformer(model), poses()
+    deformer, faces = make_deformer(deformer_name, model), poses()
     tasks = _baseline(model)
     for name, pose in faces.items():
         whole = partial(deformer.step, pose, 1 / 60)
         tasks |= {f"{name}.frame": whole, f"{name}.frame_warm": whole}
         # behind a whole frame, each stage finds what the ones before it left
-        stages = deformer.stages(deformer.at(pose))
+        stages = deformer.stages(deformer.at(pose)) if isinstance(deformer, GeometricDeformer) else {}
         tasks |= {f"{name}.stage.{stage}": partial(act, pose) for stage, act in stages.items()}
     with one_thread() as limited:
         times = interleave(tasks, rounds)
@@ -74,7 +77,7 @@ def run(model: HeadModel | None = None, rounds: int = 200, finest: int = FINEST)
         report["baseline"] |= {f"{name}{state}_us": value for name, value in row.items()}
     for name in faces:
         report[name] = _figures(name, times, report["baseline"])
-    report["growth"] = _growth(densities(model, finest), faces["mixed"], max(1, rounds // 4))
+    report["growth"] = _growth(densities(model, finest), faces["mixed"], max(1, rounds // 4), deformer_name)
     return report
 
 
@@ -95,8 +98,8 @@ def _figures(name: str, times: dict[str, float], baseline: dict[str, float]) -> 
     }
 
 
-def _growth(models: list[HeadModel], pose: FacePose, rounds: int) -> dict[str, Any]:
-    deformers = [GeometricDeformer(model) for model in models]
+def _growth(models: list[HeadModel], pose: FacePose, rounds: int, deformer_name: str) -> dict[str, Any]:
+    deformers = [make_deformer(deformer_name, model) for model in models]
     tasks = {str(index): partial(deformer.step, pose, 1 / 60) for index, deformer in enumerate(deformers)}
     times = interleave(tasks, rounds)
     vertex = [1e3 * times[str(index)] / len(model.vertices) for index, model in enumerate(models)]

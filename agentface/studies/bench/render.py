@@ -11,7 +11,7 @@ from itertools import cycle
 from statistics import median
 from typing import TYPE_CHECKING, Any
 
-from agentface.deform.pipeline import GeometricDeformer
+from agentface.deform.protocol import DEFAULT_DEFORMER, Deformer, make_deformer
 from agentface.view.gl.quality import QUALITIES
 from agentface.view.gl.targets import Targets
 from agentface.view.renderer import Renderer
@@ -26,7 +26,12 @@ _IN_A_ROW = 5
 STAGES = ("deform", "upload", "draw", "readback")
 
 
-def run(model: HeadModel | None = None, rounds: int = 15, sizes: tuple[tuple[int, int], ...] = SIZES) -> dict[str, Any]:
+def run(
+    model: HeadModel | None = None,
+    rounds: int = 15,
+    sizes: tuple[tuple[int, int], ...] = SIZES,
+    deformer_name: str = DEFAULT_DEFORMER,
+) -> dict[str, Any]:
     """Medians over interleaved rounds, in milliseconds a frame; ``_cpu_ms`` is the time of all processors together.
 
     For each quality and size: ``deform``, from a pose to vertices; ``upload``, of what changes with the frame;
@@ -40,11 +45,13 @@ def run(model: HeadModel | None = None, rounds: int = 15, sizes: tuple[tuple[int
 
         model = load_model()
     with _Renderer(model) as renderer, renderer.current():
-        return _measure(renderer, model, sizes, rounds)
+        return _measure(renderer, model, sizes, rounds, deformer_name)
 
 
-def _measure(renderer: _Renderer, model: HeadModel, sizes: tuple[tuple[int, int], ...], rounds: int) -> dict[str, Any]:
-    deformer, stages = GeometricDeformer(model), _Stages(renderer.context)
+def _measure(
+    renderer: _Renderer, model: HeadModel, sizes: tuple[tuple[int, int], ...], rounds: int, deformer_name: str
+) -> dict[str, Any]:
+    deformer, stages = make_deformer(deformer_name, model), _Stages(renderer.context)
     targets = {
         (name, size): Targets.make(renderer.context, size, quality.samples)
         for size in sizes
@@ -120,7 +127,7 @@ class _Stages:
 
 def _frame(
     renderer: _Renderer,
-    deformer: GeometricDeformer,
+    deformer: Deformer,
     poses: Iterator[FacePose],
     screen: Targets,
     quality: str,

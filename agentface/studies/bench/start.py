@@ -13,6 +13,7 @@ from statistics import median
 from tempfile import TemporaryDirectory
 from typing import Any
 
+from agentface.deform.protocol import DEFAULT_DEFORMER
 from agentface.resources import DEFAULT_FACE
 
 LIBRARIES = ("numpy", "numba", "moderngl", "pydantic", "PIL.Image", "yaml", "click")
@@ -22,30 +23,31 @@ _FACES = f"""{_IMPORTS}, agentface.face, agentface.deform.order_compiled, json, 
 times = []
 for _ in range(2):
     start = time.process_time()
-    agentface.face.Face(sys.argv[1]).warm_up()
+    agentface.face.Face(sys.argv[1], deformer=sys.argv[2]).warm_up()
     times.append(time.process_time() - start)
 print(json.dumps(times))
 """
 
 
-def run(face: str | Path = DEFAULT_FACE, rounds: int = 5) -> dict[str, Any]:
+def run(face: str | Path = DEFAULT_FACE, rounds: int = 5, deformer_name: str = DEFAULT_DEFORMER) -> dict[str, Any]:
     """Medians over interleaved rounds, processor time of whole processes from warm caches, and their ratio.
 
     ``imports`` imports :data:`LIBRARIES`, ``render`` is ``agentface render``, a fast picture of 1280 x 720. In a
     process that has imported everything, ``first_face`` makes a ``Face`` and warms it up, ``second_face`` another.
     """
+    choice = "--face", str(face), "--deformer", deformer_name
     with TemporaryDirectory() as folder:
-        render = ("-m", "agentface", "render", "--face", str(face), "-o", str(Path(folder, "face.png")))
+        render = ("-m", "agentface", "render", *choice, "-o", str(Path(folder, "face.png")))
         programs: dict[str, Sequence[str]] = {"imports": ("-c", _IMPORTS), "render": render}
         for words in programs.values():
             _cpu_ms(words)  # fills the caches
-        _faces(face)
+        _faces(face, deformer_name)
         cpu: dict[str, list[float]] = {name: [] for name in programs}
         faces: list[list[float]] = []
         for _ in range(rounds):
             for name, words in programs.items():
                 cpu[name].append(_cpu_ms(words))
-            faces.append(_faces(face))
+            faces.append(_faces(face, deformer_name))
     times = {name: median(values) for name, values in cpu.items()}
     first, second = (median(row) for row in zip(*faces, strict=True))
     return {
@@ -58,8 +60,8 @@ def run(face: str | Path = DEFAULT_FACE, rounds: int = 5) -> dict[str, Any]:
     }
 
 
-def _faces(face: str | Path) -> list[float]:
-    times: list[float] = json.loads(_python(("-c", _FACES, str(face))))
+def _faces(face: str | Path, deformer_name: str) -> list[float]:
+    times: list[float] = json.loads(_python(("-c", _FACES, str(face), deformer_name)))
     return times
 
 

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
-from agentface.deform.pipeline import GeometricDeformer
+from agentface.deform.protocol import DEFAULT_DEFORMER, make_deformer
 from agentface.emotion.inference import default_inference
 from agentface.emotion.state import EMOTIONS
 from agentface.head.look import load_look
@@ -30,7 +30,12 @@ _OUTWARD = 0.05  # light that reaches skin which is seen
 _NEITHER = 0.3  # of the material inside the mouth, and of wet lids
 
 
-def run(model: HeadModel | None = None, rounds: int = 12, size: tuple[int, int] = (1280, 720)) -> dict[str, Any]:
+def run(
+    model: HeadModel | None = None,
+    rounds: int = 12,
+    size: tuple[int, int] = (1280, 720),
+    deformer_name: str = DEFAULT_DEFORMER,
+) -> dict[str, Any]:
     """How finely a picture of 2048 pixels a side lies on the face, how emotions strain it, and what drawing it costs.
 
     ``texels_a_mm``: along the finer and the coarser axis, so that 5 %, 50 % and 95 % of the face's area have fewer.
@@ -43,12 +48,13 @@ def run(model: HeadModel | None = None, rounds: int = 12, size: tuple[int, int] 
         from agentface.head.model import load_model
 
         model = load_model()
-    return {"rounds": rounds, **_laid(model), **_drawn(model, rounds, size)}
+    return {"rounds": rounds, **_laid(model, deformer_name), **_drawn(model, rounds, size, deformer_name)}
 
 
-def _laid(model: HeadModel) -> dict[str, Any]:
+def _laid(model: HeadModel, deformer_name: str) -> dict[str, Any]:
     """How finely the picture lies, and how emotions strain it."""
-    deformer, infer, rest = GeometricDeformer(model), default_inference(), _frames(model.vertices[model.triangles])
+    deformer, infer = make_deformer(deformer_name, model), default_inference()
+    rest = _frames(model.vertices[model.triangles])
     area = np.where(_shown(model), 0.5 * np.linalg.det(rest), 0.0)
     density = _axes(_flat_frames(SIDE * model.uv[model.triangles]) @ np.linalg.inv(rest)) / 1e3
     fineness = {
@@ -66,9 +72,9 @@ def _laid(model: HeadModel) -> dict[str, Any]:
     return {"texels_a_mm": fineness, "strain": strain}
 
 
-def _drawn(model: HeadModel, rounds: int, size: tuple[int, int]) -> dict[str, Any]:
+def _drawn(model: HeadModel, rounds: int, size: tuple[int, int], deformer_name: str) -> dict[str, Any]:
     """What each quality keeps of a face that wears its own template, and what that costs."""
-    smiling = GeometricDeformer(model).at(default_inference().pose({"happiness": 0.5}))
+    smiling = make_deformer(deformer_name, model).at(default_inference().pose({"happiness": 0.5}))
     renderers = {"plain": Renderer(model), "worn": _wearing_its_template(model)}
     report: dict[str, Any] = {}
     for quality in QUALITIES:

@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import yaml
 
+from agentface.deform.protocol import DEFAULT_DEFORMER
 from agentface.head.model import HeadModel, load_model
 from agentface.head.muscles import MusclesFile, read_muscles
 from agentface.resources import data_folder
@@ -44,7 +45,7 @@ def muscles_yaml(file: MusclesFile) -> str:
     return _TITLE + yaml.safe_dump(content, sort_keys=False, default_flow_style=None, width=118)
 
 
-def table(models: list[HeadModel]) -> str:
+def table(models: list[HeadModel], deformer_name: str = DEFAULT_DEFORMER) -> str:
     """The agreement of every action unit on every face, as a Markdown table."""
     units = load_action_units()
     lines = [
@@ -52,7 +53,7 @@ def table(models: list[HeadModel]) -> str:
         "|---|---|---|---|---|---|---|---|---|",
     ]
     for model in models:
-        rows = measure(model, units)
+        rows = measure(model, units, deformer_name)
         for number, row in rows.items():
             lines.append(
                 f"| {model.name} | {number} | {units[number].name} | {row.cosine:.2f} | {row.covered:.2f} "

@@ -4,7 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from importlib import import_module
+from inspect import signature
 from pathlib import Path
+
+from agentface.deform.protocol import DEFAULT_DEFORMER
 
 FIGURES: dict[str, str] = {
     "lips": "Figures 2 and 6: the lips' surface and its control points, and orbicularis oris",
@@ -20,10 +23,15 @@ FIGURES: dict[str, str] = {
     "expressions": "Figures 13 to 16: neutral, surprise, happiness, sadness",
     "window": "the window, on a virtual display",
 }
-"""The figures and what they show; each is a module of this package with ``figures(face) -> {file name: PNG}``."""
+"""The figures and what they show; each is a module of this package with ``figures(face) -> {file name: PNG}``,
+and with a ``deformer_name`` where any deformer will do."""
 
 
-def draw(face: str | Path, names: tuple[str, ...] = tuple(FIGURES)) -> Iterator[tuple[str, bytes]]:
+def draw(
+    face: str | Path, names: tuple[str, ...] = tuple(FIGURES), deformer: str = DEFAULT_DEFORMER
+) -> Iterator[tuple[str, bytes]]:
     """File name and content of every picture of the figures ``names``, one after the other as they are drawn."""
     for name in names:
-        yield from import_module(f"agentface.studies.figures.{name}").figures(face).items()
+        figures = import_module(f"agentface.studies.figures.{name}").figures
+        options = {"deformer_name": deformer} if "deformer_name" in signature(figures).parameters else {}
+        yield from figures(face, **options).items()

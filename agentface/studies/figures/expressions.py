@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from agentface.deform.pipeline import GeometricDeformer
+from agentface.deform.protocol import DEFAULT_DEFORMER, make_deformer
 from agentface.emotion.inference import default_inference
 from agentface.emotion.state import EmotionState
 from agentface.head.model import load_model
@@ -15,10 +15,10 @@ EMOTIONS = {"neutral": "Figure 13", "surprise": "Figure 14", "happiness": "Figur
 _SIZE = (420, 500)
 
 
-def figures(face: str | Path) -> dict[str, bytes]:
+def figures(face: str | Path, deformer_name: str = DEFAULT_DEFORMER) -> dict[str, bytes]:
     """``emotional-faces.png``: each of :data:`EMOTIONS` at its height, from the front and from three quarters."""
     model = load_model(face)
-    deformer, inference, renderer = GeometricDeformer(model), default_inference(), Renderer(model)
+    deformer, inference, renderer = make_deformer(deformer_name, model), default_inference(), Renderer(model)
     panels = []
     for camera in ("front", "three-quarter"):
         for name, number in EMOTIONS.items():

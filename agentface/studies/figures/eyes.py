@@ -8,7 +8,7 @@ import numpy as np
 
 from agentface.conventions import Bytes
 from agentface.deform.eyes.eyelids import coupled
-from agentface.deform.pipeline import GeometricDeformer
+from agentface.deform.protocol import DEFAULT_DEFORMER, make_deformer
 from agentface.head.model import HeadModel, load_model
 from agentface.parameters import FacePose
 from agentface.view.camera import Camera
@@ -22,10 +22,10 @@ _PAIR, _SINGLE = (560, 250), (330, 290)
 _AWAY, _ABOVE = 0.5, 0.03  # m, of the camera
 
 
-def figures(face: str | Path) -> dict[str, bytes]:
+def figures(face: str | Path, deformer_name: str = DEFAULT_DEFORMER) -> dict[str, bytes]:
     """``eyelids.png``, one eye and both eyes closing, and ``squeeze.png``, one eye squeezed."""
     model = load_model(face)
-    deformer, renderer = GeometricDeformer(model), Renderer(model)
+    deformer, renderer = make_deformer(deformer_name, model), Renderer(model)
 
     def picture(pose: FacePose, camera: Camera, size: tuple[int, int]) -> Bytes:
         return renderer.render(deformer.at(pose), size, camera, "portrait")

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from pathlib import Path
 
-from agentface.deform.pipeline import GeometricDeformer
+from agentface.deform.protocol import DEFAULT_DEFORMER, make_deformer
 from agentface.head.model import HeadModel, load_model
 from agentface.parameters import FacePose
 from agentface.view.camera import Camera
@@ -17,10 +17,10 @@ _TURNS_DEG = {"front": 0.0, "three-quarter": 36.0}
 _SIZE, _DISTANCE, _FIELD_OF_VIEW_DEG = (340, 340), 0.5, 13.0
 
 
-def figures(face: str | Path) -> dict[str, bytes]:
+def figures(face: str | Path, deformer_name: str = DEFAULT_DEFORMER) -> dict[str, bytes]:
     """``jaw.png``: the mouth at each of :data:`OPENINGS`, from the front and from three quarters."""
     model = load_model(face)
-    deformer, renderer = GeometricDeformer(model), Renderer(model)
+    deformer, renderer = make_deformer(deformer_name, model), Renderer(model)
     panels = []
     for name, turn in _TURNS_DEG.items():
         camera = _close(model, math.radians(turn))

@@ -9,7 +9,7 @@ import numpy as np
 from PIL import Image, ImageDraw, ImageFilter
 
 from agentface.conventions import Bytes
-from agentface.deform.pipeline import GeometricDeformer
+from agentface.deform.protocol import DEFAULT_DEFORMER, make_deformer
 from agentface.emotion.inference import default_inference
 from agentface.head.look import load_look
 from agentface.head.model import HeadModel, load_model
@@ -21,7 +21,7 @@ _SIZE, _SIDE, _SEED = (340, 380), 1024, 1
 _BLUE, _WHITE, _FRECKLE = (40, 70, 160, 230), (235, 235, 235, 230), (120, 60, 35, 150)
 
 
-def figures(face: str | Path) -> dict[str, bytes]:
+def figures(face: str | Path, deformer_name: str = DEFAULT_DEFORMER) -> dict[str, bytes]:
     """``texture.png``: the template with paint on it, and the face that wears the paint, at rest and smiling."""
     model = load_model(face)
     look, paint = load_look(model), _painted(model)
@@ -33,7 +33,7 @@ def figures(face: str | Path) -> dict[str, bytes]:
     template = Image.fromarray(skin_template(model, look, _SIDE))
     template.alpha_composite(paint)
     panels = [(_panel(template), "the template, painted on", "agentface unwrap")]
-    deformer, infer = GeometricDeformer(model), default_inference()
+    deformer, infer = make_deformer(deformer_name, model), default_inference()
     for title, emotions in (
         ("neutral", {}),
         ("happiness 0.8", {"happiness": 0.8}),

@@ -38,7 +38,7 @@ def figures(face: str | Path) -> dict[str, bytes]:
         return {"window.png": picture.read_bytes()}
 
 
-def photograph(face: str, path: Path) -> None:
+def photograph(face: str, path: str | Path) -> None:
     """Open the window on the display at hand, which it fills, and write what the display shows."""
     from PIL import ImageGrab
 
@@ -56,11 +56,11 @@ def photograph(face: str, path: Path) -> None:
         frames += 1
         shown.set_gaze(6.0 + 0.1 * frames, 1.0, fade=0.0)  # a still face would not be drawn again
         if frames == _FRAMES:
-            path.write_bytes(in_colours(ImageGrab.grab()))
+            Path(path).write_bytes(in_colours(ImageGrab.grab()))
             window.controls.closing = True
 
     window.run(each_frame=each_frame)
 
 
 if __name__ == "__main__":
-    photograph(sys.argv[1], Path(sys.argv[2]))
+    photograph(sys.argv[1], sys.argv[2])

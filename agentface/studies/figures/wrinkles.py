@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from agentface.conventions import Bytes, Doubles, Indices
-from agentface.deform.pipeline import GeometricDeformer
+from agentface.deform.protocol import DEFAULT_DEFORMER, make_deformer
 from agentface.head.model import HeadModel, load_model
 from agentface.head.trains import Train, ZoneTrain, heights, inner_feet
 from agentface.mesh.normals import corner_normals
@@ -33,9 +33,9 @@ _PANEL, _FINER = 400, 3
 _SEEN = 2.5  # how many times as high the wrinkles of the wired forehead are drawn
 
 
-def figures(face: str | Path) -> dict[str, bytes]:
+def figures(face: str | Path, deformer_name: str = DEFAULT_DEFORMER) -> dict[str, bytes]:
     """``wrinkle-normals.png``, with and without the correction at the feet, and ``wrinkles.png``, mesh and face."""
-    return {"wrinkle-normals.png": png(_normals()), "wrinkles.png": png(_forehead(load_model(face)))}
+    return {"wrinkle-normals.png": png(_normals()), "wrinkles.png": png(_forehead(load_model(face), deformer_name))}
 
 
 def skin_strip(train: Train) -> tuple[Doubles, Indices, np.typing.NDArray[np.bool_]]:
@@ -68,11 +68,11 @@ def _normals() -> Image:
     return sheet(panels, columns=2)
 
 
-def _forehead(model: HeadModel) -> Image:
+def _forehead(model: HeadModel, deformer_name: str) -> Image:
     points, triangles, _ = skin_strip(TRAIN)
     turned = _pitched(points)
     strip = MeshView(turned.mean(axis=0), 0.068, 20.0, _PANEL * _FINER)
-    deformer = GeometricDeformer(model)
+    deformer = make_deformer(deformer_name, model)
     geometry = deformer.at(FacePose.of(**SURPRISED))
     rest, moved = model.vertices.astype(np.float64), geometry.vertices.astype(np.float64)
     moved += (_SEEN - 1.0) * geometry.wrinkles[:, None] * geometry.smooth_normals

@@ -11,6 +11,7 @@ from agentface.mesh.normals import vertex_normals
 from agentface.parameters import PARAMETERS, FacePose
 from agentface.studies.bench import BENCHES, crowd, deform, frame, papers, plain
 from agentface.studies.bench.timing import interleave
+from tests.deform import jelly
 from tests.deform.rig import make_rig
 from tests.heads import deformer_of, head_model
 
@@ -146,6 +147,15 @@ def test_the_stages_of_a_frame_make_the_frame():
     for act in deformer.stages(geometry).values():
         act(pose)
     assert geometry == deformer.at(pose)
+
+
+def test_any_deformer_is_measured_by_its_name():
+    with jelly.registered() as name:
+        report = frame.run(head_model("amber"), rounds=1, finest=6_000, deformer_name=name)
+        row = crowd.run(head_model("amber"), sizes=(2,), faces=2, deformer_name=name)["faces_2"]
+    assert report["smile"]["stages"] == {}
+    assert report["smile"]["frame_us"] > 0
+    assert row["threads_1"]["face_us"] > 0
 
 
 def test_a_crowd_is_told_by_its_size_and_threads():
