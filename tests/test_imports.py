@@ -21,11 +21,13 @@ LAYERS = (
     ("parameters", "clock", "kernel"),
     ("mesh",),
     ("head",),
-    ("emotion", "motion", "deform", "tissue", "mpeg4"),
+    ("emotion", "deform"),
+    ("motion",),
     ("requests",),
+    ("view",),
     ("face",),
     ("live",),
-    ("io", "view"),
+    ("io",),
     ("window",),
     ("studies",),
     ("commands",),
@@ -33,11 +35,6 @@ LAYERS = (
     ("__main__",),
 )
 RANK = {part: rank for rank, layer in enumerate(LAYERS) for part in layer}
-
-EXCEPTIONS = {
-    ("motion", "emotion"): "the emotion channel fades between contractions, which the fuzzy rules infer",
-    ("face", "view"): "Face.render() opens a renderer when it is first called",
-}
 
 # Libraries that touch the world outside, and the only parts that may know each
 OWNERS = {
@@ -92,16 +89,8 @@ def test_every_part_has_a_layer():
 
 
 def test_parts_import_only_what_stands_before_them():
-    wrong = [
-        f"{place}: {part} imports {other}"
-        for part, other, place in inner_imports()
-        if RANK[other] >= RANK[part] and (part, other) not in EXCEPTIONS
-    ]
+    wrong = [f"{place}: {part} imports {other}" for part, other, place in inner_imports() if RANK[other] >= RANK[part]]
     assert not wrong, "\n".join(wrong)
-
-
-def test_no_exception_is_left_over():
-    assert {(part, other) for part, other, _ in inner_imports()} >= EXCEPTIONS.keys()
 
 
 @pytest.mark.parametrize("library", OWNERS)
