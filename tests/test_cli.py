@@ -203,7 +203,7 @@ def test_check_names_files_that_it_does_not_know(tmp_path):
 def test_bench_prints_what_the_benchmarks_say(monkeypatch):
     from agentface.studies import bench
 
-    monkeypatch.setattr(bench, "run", lambda name, face: {"name": name, "inner": {"time_us": 1.23456}})
+    monkeypatch.setattr(bench, "run", lambda name, face, deformer: {"name": name, "inner": {"time_us": 1.23456}})
     assert json.loads(call("bench", "deform", "--json", "-").stdout) == {
         "name": "deform",
         "inner": {"time_us": 1.23456},
@@ -215,7 +215,7 @@ def test_bench_prints_what_the_benchmarks_say(monkeypatch):
 def test_all_benchmarks_but_the_one_that_draws_run_without_opengl(monkeypatch):
     from agentface.studies import bench
 
-    def run(name, face):
+    def run(name, face, deformer):
         if name == "render":
             raise GraphicsError("no OpenGL:\n  libEGL.so.1 is missing")
         return {"time_us": 1.0}

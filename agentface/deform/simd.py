@@ -129,11 +129,23 @@ def _lane_by_lane(make: Callable[[Any, Any, Any], Any]) -> Any:
 
 
 larger = _lane_by_lane(lambda builder, a, b: _select(builder, ">", a, b))
-where_positive = _lane_by_lane(
-    lambda builder, a, b: builder.select(
-        builder.fcmp_ordered(">=", a, ir.Constant(_VECTOR, [0.0] * LANES)), b, ir.Constant(_VECTOR, [0.0] * LANES)
-    )
-)
+
+
+def _chosen(builder: Any, condition: Any, a: Any, b: Any) -> Any:
+    return builder.select(builder.fcmp_ordered(">=", condition, ir.Constant(_VECTOR, [0.0] * LANES)), a, b)
+
+
+@_intrinsic
+def choose(typing: Any, condition: Any, a: Any, b: Any) -> Any:
+    """``a`` where ``condition`` is not negative, else ``b``."""
+
+    def generate(context: Any, builder: Any, signature: Any, args: Any) -> Any:
+        return _chosen(builder, *args)
+
+    return _TYPE(_TYPE, _TYPE, _TYPE), generate
+
+
+where_positive = _lane_by_lane(lambda builder, a, b: _chosen(builder, a, b, ir.Constant(_VECTOR, [0.0] * LANES)))
 smaller = _lane_by_lane(lambda builder, a, b: _select(builder, "<", a, b))
 
 
@@ -157,3 +169,4 @@ def _define(symbol: Any, operation: Any) -> None:
 _define(operator.add, _lane_by_lane(lambda builder, a, b: builder.fadd(a, b)))
 _define(operator.sub, _lane_by_lane(lambda builder, a, b: builder.fsub(a, b)))
 _define(operator.mul, _lane_by_lane(lambda builder, a, b: builder.fmul(a, b)))
+_define(operator.truediv, _lane_by_lane(lambda builder, a, b: builder.fdiv(a, b)))

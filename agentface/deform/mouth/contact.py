@@ -184,7 +184,8 @@ def _overlaps(
     rings = grid[_FIRST_RING : _LAST_RING + 1]
     at, height = np.moveaxis(points[rings[:, None, own], :2], -1, 0)
     across, up = np.moveaxis(points[rings[:, other], :2], -1, 0)
-    second = np.clip((across[None, :, None, 1:-1] >= at[..., None]).sum(-1) + 1, 1, len(other) - 1)
+    before = across[None, :, None, 1:-1] >= at[..., None]
+    second = np.where(before.any(-1), before.shape[-1] - before[..., ::-1].argmax(-1), 0) + 1
     ring = np.arange(len(rings))[:, None]
     first, last = across[ring, second - 1], across[ring, second]
     part = np.clip((first - at) / np.maximum(first - last, np.float32(1e-6)), np.float32(0.0), np.float32(1.0))

@@ -3,16 +3,27 @@
 from __future__ import annotations
 
 import math
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from agentface.conventions import Floats, Indices
+from agentface.deform.lanes import LANES
 from agentface.deform.mouth.contact import CORNER, FARTHEST, PARTINGS, ROUNDS, SPREAD, STEEP, ContactTables
+from agentface.deform.simd import choose, larger, load, smaller, splat, store
 from agentface.kernel import kernel
 
 _ZERO, _QUARTER, _HALF, _ONE = np.float32(0.0), np.float32(0.25), np.float32(0.5), np.float32(1.0)
 _TWO, _THREE, _FOUR, _CLOSEST = np.float32(2.0), np.float32(3.0), np.float32(4.0), np.float32(1e-6)
+
+
+class Overlaps(NamedTuple):
+    """Of the columns of one lip, against one ring of the other: as in the twin's ``_overlaps``, in whole vectors."""
+
+    second: Floats
+    overlap: Floats
+    part: Floats
+    inside: Floats
 
 
 @kernel(error_model="numpy")
@@ -71,21 +82,29 @@ def _close_lips(tables: ContactTables, press: np.float32, points: Floats) -> Non
     for lip in range(2):
         own, other = (tables.upper, tables.lower) if lip == 0 else (tables.lower, tables.upper)
         sign = _ONE if lip == 0 else -_ONE
-        across, up = _rings(tables, other, points)
+        gap = _gaps(tables, own, other, sign, points)
         near = np.zeros(own.shape[0], np.float32)
         for k in range(2, own.shape[0] - 2):
-            gap = np.float32(np.inf)
-            for ring in range(tables.first, tables.last + 1):
-                vertex = tables.grid[ring, own[k]]
-                for facing in range(across.shape[0]):
-                    overlap = _overlap(across[facing], up[facing], points[vertex], sign)[0]
-                    gap = min(gap, -overlap)
-            gap = max(gap, _ZERO)
-            near[k] = min(_ONE, max(_ZERO, _TWO - gap / FARTHEST)) * gap
+            near[k] = min(_ONE, max(_ZERO, _TWO - gap[k] / FARTHEST)) * gap[k]
         for k in range(1, own.shape[0] - 1):
             even = _HALF * near[k] + _QUARTER * (near[k - 1] + near[k + 1])
             move[own[k]] = -_HALF * sign * share * even
     _move(tables, move, points)
+
+
+@kernel(error_model="numpy")
+def _gaps(tables: ContactTables, own: Indices, other: Indices, sign: np.float32, points: Floats) -> Floats:
+    """``(K,)`` m: between each of ``own`` columns and the other lip, where they are nearest; none is negative."""
+    places, heights = _rings(tables, own, points)
+    across, up = _rings(tables, other, points)
+    found = _new_overlaps(places.shape[1])
+    gap = np.full(places.shape[1], np.float32(np.inf), np.float32)
+    for ring in range(across.shape[0]):
+        for facing in range(across.shape[0]):
+            _overlap(across[facing], up[facing], other.shape[0], places[ring], heights[ring], sign, found)
+            for k in range(gap.shape[0]):
+                gap[k] = max(min(gap[k], -found.overlap[k]), _ZERO)
+    return gap
 
 
 @kernel(error_model="numpy")
@@ -125,17 +144,20 @@ def _push_apart(
     other_push: Floats,
 ) -> bool:
     touched = False
+    places, heights = _rings(tables, own, points)
     across, up = _rings(tables, other, points)
-    for ring in range(tables.first, tables.last + 1):
-        for k in range(1, own.shape[0] - 1):
-            vertex = tables.grid[ring, own[k]]
-            for facing in range(across.shape[0]):
-                overlap, second, part, inside = _overlap(across[facing], up[facing], points[vertex], sign)
-                near = min(_ONE, inside / CORNER)
-                push = _HALF * (overlap - at_rest[k]) * near * near
+    found = _new_overlaps(places.shape[1])
+    for ring in range(across.shape[0]):
+        for facing in range(across.shape[0]):
+            _overlap(across[facing], up[facing], other.shape[0], places[ring], heights[ring], sign, found)
+            for k in range(1, own.shape[0] - 1):
+                push = _HALF * (found.overlap[k] - at_rest[k])
+                inside = found.inside[k]
                 if push <= _ZERO or inside <= _ZERO:
                     continue
                 touched = True
+                near, part, second = min(_ONE, inside / CORNER), found.part[k], np.int32(found.second[k])
+                push *= near * near
                 a, b = other[second - 1], other[second]
                 own_push[own[k]] = max(own_push[own[k]], push)
                 other_push[a] = max(other_push[a], push * SPREAD * min(_ONE, STEEP * (_ONE - part)))
@@ -145,26 +167,45 @@ def _push_apart(
 
 @kernel(error_model="numpy")
 def _rings(tables: ContactTables, columns: Indices, points: Floats) -> Any:
-    """``(rings, K)`` m twice: x and y of the rings that may touch, in these columns."""
-    across = np.empty((tables.last + 1 - tables.first, columns.shape[0]), np.float32)
+    """``(rings, K)`` m twice: x and y of the rings that may touch, in these columns and again the last, in blocks."""
+    count = (columns.shape[0] + LANES - 1) // LANES * LANES
+    across = np.empty((tables.last + 1 - tables.first, count), np.float32)
     up = np.empty_like(across)
     for ring in range(across.shape[0]):
-        for j in range(columns.shape[0]):
-            vertex = tables.grid[tables.first + ring, columns[j]]
+        for j in range(count):
+            vertex = tables.grid[tables.first + ring, columns[min(j, columns.shape[0] - 1)]]
             across[ring, j], up[ring, j] = points[vertex, 0], points[vertex, 1]
     return across, up
 
 
-@kernel(error_model="numpy", inline="always")
-def _overlap(across: Floats, up: Floats, place: Floats, sign: np.float32) -> Any:
-    x = place[0]
-    last = across.shape[0] - 1
-    second = 1
-    for j in range(1, last):
-        if across[j] >= x:
-            second += 1
-    one, other = across[second - 1], across[second]
-    part = min(_ONE, max(_ZERO, (one - x) / max(one - other, _CLOSEST)))
-    there = up[second - 1] + part * (up[second] - up[second - 1])
-    inside = -max(x - across[0], across[last] - x)
-    return sign * (there - place[1]) - max(-inside, _ZERO), second, part, inside
+@kernel(error_model="numpy")
+def _new_overlaps(count: int) -> Overlaps:
+    return Overlaps(
+        np.empty(count, np.float32),
+        np.empty(count, np.float32),
+        np.empty(count, np.float32),
+        np.empty(count, np.float32),
+    )
+
+
+@kernel(error_model="numpy")
+def _overlap(
+    across: Floats, up: Floats, count: int, places: Floats, heights: Floats, sign: np.float32, found: Overlaps
+) -> None:
+    """How far ``places`` with their ``heights`` lie beyond one ring of the other lip, of ``count`` columns."""
+    one, zero = splat(_ONE), splat(_ZERO)
+    for block in range(0, places.shape[0], LANES):
+        x = load(places, block)
+        second, here, there, low, high = one, splat(across[0]), splat(across[1]), splat(up[0]), splat(up[1])
+        for j in range(1, count - 1):
+            before = splat(across[j]) - x
+            second = choose(before, splat(np.float32(j + 1)), second)
+            here, there = choose(before, splat(across[j]), here), choose(before, splat(across[j + 1]), there)
+            low, high = choose(before, splat(up[j]), low), choose(before, splat(up[j + 1]), high)
+        part = smaller(one, larger(zero, (here - x) / larger(here - there, splat(_CLOSEST))))
+        beyond = larger(x - splat(across[0]), splat(across[count - 1]) - x)
+        overlap = (low + part * (high - low) - load(heights, block)) * sign - larger(beyond, zero)
+        store(found.second, block, second)
+        store(found.part, block, part)
+        store(found.inside, block, zero - beyond)
+        store(found.overlap, block, overlap)
