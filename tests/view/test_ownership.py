@@ -27,9 +27,8 @@ from tests.heads import head_model
 pytestmark = pytest.mark.gl
 
 SIZE = (64, 48)
-LONG = os.environ.get("AGENTFACE_SOAK") == "1"
-FACES = 100 if LONG else 6  # each took 41 MB before anything went back
-SIZES = 200 if LONG else 30
+FACES = [6, pytest.param(100, marks=pytest.mark.soak)]  # each took 41 MB before anything went back
+SIZES = [30, pytest.param(200, marks=pytest.mark.soak)]
 MOST_MB = 30
 
 
@@ -63,12 +62,13 @@ def mb(): return int(open("/proc/self/statm").read().split()[1]) * 4096 / 1e6
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("ending", ["del face", "face._renderer.close()"])
-def test_faces_made_drawn_and_dropped_leave_no_memory_behind(ending):
+@pytest.mark.parametrize("faces", FACES)
+@pytest.mark.parametrize("ending", ["del face", "face.close()"])
+def test_faces_made_drawn_and_dropped_leave_no_memory_behind(ending, faces):
     grown = program(
         MEMORY
         + textwrap.dedent(f"""
-        for number in range({FACES}):
+        for number in range({faces}):
             face = Face(compiled=False)
             face.render((320, 240), quality="portrait" if number % 4 == 0 else "fast")
             {ending}
@@ -82,8 +82,9 @@ def test_faces_made_drawn_and_dropped_leave_no_memory_behind(ending):
 
 
 @pytest.mark.slow
+@pytest.mark.parametrize("sizes", SIZES)
 @pytest.mark.parametrize(("quality", "size"), [("fast", (1280, 720)), ("portrait", (400, 300))])
-def test_pictures_of_many_sizes_leave_no_memory_behind(quality, size):
+def test_pictures_of_many_sizes_leave_no_memory_behind(quality, size, sizes):
     grown = program(
         MEMORY
         + textwrap.dedent(f"""
@@ -91,7 +92,7 @@ def test_pictures_of_many_sizes_leave_no_memory_behind(quality, size):
         for more in (100, 0):  # near and far, a portrait's skin is cut differently
             face.render(({size[0]} + more, {size[1]} + more), quality={quality!r})
         began = mb()
-        for number in range({SIZES}):
+        for number in range({sizes}):
             face.render(({size[0]} + 2 * (number % 40), {size[1]} + number % 40), quality={quality!r})
         face.render({size}, quality={quality!r})
         print(mb() - began)
