@@ -20,6 +20,7 @@ from typing import NamedTuple, TypeAlias
 import numpy as np
 
 from agentface.conventions import Doubles, Floats, Indices
+from agentface.deform.lanes import LANES
 from agentface.deform.mouth.lip_surface import mirrored_controls
 from agentface.head.model import HeadModel
 from agentface.head.resample import ResampledModel
@@ -49,7 +50,7 @@ class JawTables(NamedTuple):
 
     Attributes:
         where: ``(N,)`` int32, rows of the points that follow the jaw.
-        share: ``(N,)`` float32 0..1, the part of the turn that each makes.
+        share: float32 0..1, the part of the turn that each makes; ``(N,)``, and 0 up to a whole block of LANES.
         drawn: ``(N, 2)`` float32 m, how far each goes along x and z at the whole opening.
         hinge: ``(2,)`` float32 m, y and z of the axis.
         widest: rad, the turn of the whole opening.
@@ -79,7 +80,7 @@ def prepare(model: HeadModel, follow: Follow | None = None, surface: Surface | N
     where = np.flatnonzero((share > 0.0) | drawn.any(axis=1)).astype(np.int32)
     return JawTables(
         where=where,
-        share=np.ascontiguousarray(share[where]),
+        share=np.append(share[where], np.zeros(-len(where) % LANES)).astype(np.float32),
         drawn=np.ascontiguousarray(drawn[where], np.float32),
         hinge=np.array(model.jaw.pivot[1:], np.float32),
         widest=math.radians(model.jaw.widest_deg),
@@ -145,7 +146,7 @@ def apply(tables: JawTables, values: Floats, points: Floats) -> None:
     if values[tables.parameter] == 0.0:
         return
     points[tables.where, ::2] += values[tables.parameter] * tables.drawn
-    turn = tables.share * np.float32(tables.widest * values[tables.parameter])
+    turn = tables.share[: len(tables.where)] * np.float32(tables.widest * values[tables.parameter])
     cosine, sine = np.cos(turn), np.sin(turn)
     up, forward = (points[tables.where, 1:] - tables.hinge).T
     points[tables.where, 1] = tables.hinge[0] + cosine * up - sine * forward
