@@ -30,6 +30,12 @@ def can_compile() -> bool:
     return os.environ.get("NUMBA_DISABLE_JIT", "0") in ("", "0")
 
 
+def any_kept() -> bool:
+    """Whether kernels of these sources have been kept on this machine: without any, a first face waits for them."""
+    folder = _folder()
+    return folder is not None and any(folder.iterdir())
+
+
 def kernel(**options: Any) -> Callable[[_F], _F]:
     """``numba.njit(**options)`` for a decorator's use; the machine code outlives the process where it can."""
     from numba import njit

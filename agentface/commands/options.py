@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import click
 from click.core import ParameterSource
 
+from agentface.commands.streams import console
 from agentface.resources import DEFAULT_FACE
 
 if TYPE_CHECKING:
@@ -125,6 +126,18 @@ def make_face(face: str, deformer: str, *, compiled: bool = True, look: str | No
     from agentface.face import Face
 
     return Face(face, deformer=deformer, compiled=compiled, look=look)
+
+
+def warm_up(face: Face) -> None:
+    """Load what a running face needs, or compile it the first time on a machine: a terminal is told of the wait."""
+    from agentface.kernel import any_kept
+
+    terminal = console()
+    if not terminal.is_terminal or any_kept():
+        face.warm_up()
+        return
+    with terminal.status("compiling for this machine, which takes about half a minute once"):
+        face.warm_up()
 
 
 def write_json(file: str, content: dict[str, Any]) -> None:

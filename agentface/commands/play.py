@@ -18,6 +18,7 @@ from agentface.commands.options import (
     look_option,
     make_face,
     size_option,
+    warm_up,
 )
 from agentface.commands.streams import tell
 from agentface.errors import DataError, Fault, GraphicsError
@@ -79,7 +80,7 @@ def play(
         if output is not None:
             _film(shown, score, Shot(output, size, camera, quality or "fast", fps, look), ending)
             return
-        shown.warm_up()
+        warm_up(shown)
         try:
             _show(shown, score, ending, look, camera, quality, loop=loop)
         except GraphicsError as error:

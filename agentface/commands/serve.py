@@ -19,6 +19,7 @@ from agentface.commands.options import (
     look_option,
     make_face,
     size_option,
+    warm_up,
 )
 from agentface.commands.streams import say, tell
 
@@ -72,7 +73,7 @@ def serve(
     from agentface.io.osc.server import OscServer
 
     shown = make_face(face, deformer, look=look)
-    shown.warm_up()
+    warm_up(shown)
     with until_told() as ending, OscServer(shown, *osc) as server:
         if view == "window":
             _in_a_window(server, shown, ending, look, quality, camera)
