@@ -33,7 +33,7 @@ def can_compile() -> bool:
 def any_kept() -> bool:
     """Whether kernels of these sources have been kept on this machine: without any, a first face waits for them."""
     folder = _folder()
-    return folder is not None and any(folder.iterdir())
+    return folder is not None and any(folder.rglob("*.nbi"))
 
 
 def kernel(**options: Any) -> Callable[[_F], _F]:

@@ -28,5 +28,7 @@ def test_kernels_are_kept_once_one_is_compiled(tmp_path, monkeypatch):
     for folder, kept in ((None, False), (tmp_path, False)):
         monkeypatch.setattr(kernel, "_folder", lambda folder=folder: folder)
         assert kernel.any_kept() is kept
-    assert kernel.kernel()(lambda number: number + number)(2) == 4
+    twice = kernel.kernel()(lambda number: number + number)
+    assert not kernel.any_kept()
+    assert twice(2) == 4
     assert kernel.any_kept()
