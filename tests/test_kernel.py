@@ -76,6 +76,8 @@ def test_kernels_are_kept_by_the_sources_they_are_made_of(tmp_path, monkeypatch)
 
 def test_every_source_that_a_kernel_reads_counts():
     sources = {path.relative_to(Path(kernel.__file__).parent).as_posix() for path in kernel._sources()}
+    package = Path(kernel.__file__).parent
+    assert {path.relative_to(package).as_posix() for path in package.rglob("*_compiled.py")} <= sources
     assert {"parameters.py", "deform/mouth/contact.py", "emotion/sets.py", "mesh/normals_compiled.py"} <= sources
 
 

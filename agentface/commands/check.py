@@ -126,12 +126,12 @@ def _skin_beside(beside: Path) -> MeshArrays:
 
 def _whole_face(folder: Path) -> None:
     """What only the files together show: whether muscles, wrinkles, lips, lids and the rest can be made of them."""
-    from agentface.deform import tables as frame
+    from agentface.deform import tables
     from agentface.head.model import load_model
 
     model = load_model(folder)
     found: list[Fault] = []
-    for make in (lambda: model.muscles, lambda: model.trains, lambda: frame.prepare(model)):
+    for make in (lambda: model.muscles, lambda: model.trains, lambda: tables.prepare(model)):
         try:
             make()
         except InvalidValueError as error:

@@ -16,19 +16,19 @@ from agentface.head.resample import ResampledModel
 _HALF = np.float32(0.5)
 
 
-class BetweenTables(NamedTuple):
+class MidpointTables(NamedTuple):
     """``rows (N, 3)`` int32: a vertex and the two that it lies between; rows whose vertices others need come first."""
 
     rows: Indices
 
 
-def prepare(model: HeadModel) -> BetweenTables:
+def prepare(model: HeadModel) -> MidpointTables:
     """The tables of a face; no rows where it is as it was read."""
     rows = model.between if isinstance(model, ResampledModel) else np.zeros((0, 3), np.int32)
-    return BetweenTables(np.ascontiguousarray(rows, np.int32))
+    return MidpointTables(np.ascontiguousarray(rows, np.int32))
 
 
-def apply(tables: BetweenTables, points: Floats) -> None:
+def apply(tables: MidpointTables, points: Floats) -> None:
     """Put each vertex of ``points (P, 3)`` m in the middle of its two: p = (a + b) / 2."""
     for vertex, one, other in tables.rows.tolist():
         points[vertex] = _HALF * (points[one] + points[other])

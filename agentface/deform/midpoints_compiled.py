@@ -5,14 +5,14 @@ from __future__ import annotations
 import numpy as np
 
 from agentface.conventions import Floats
-from agentface.deform.midpoints import BetweenTables
+from agentface.deform.midpoints import MidpointTables
 from agentface.kernel import kernel
 
 _HALF = np.float32(0.5)
 
 
 @kernel(error_model="numpy")
-def apply(tables: BetweenTables, points: Floats) -> None:
+def apply(tables: MidpointTables, points: Floats) -> None:
     """Put each vertex of ``points (P, 3)`` m in the middle of its two."""
     for row in range(tables.rows.shape[0]):
         vertex, one, other = tables.rows[row, 0], tables.rows[row, 1], tables.rows[row, 2]

@@ -13,7 +13,7 @@ from agentface.deform.eyes import eyelids
 from agentface.deform.eyes.eyelids import EyelidsTables
 from agentface.deform.finish import order as finish
 from agentface.deform.finish.order import FinishTables
-from agentface.deform.midpoints import BetweenTables
+from agentface.deform.midpoints import MidpointTables
 from agentface.deform.mouth import contact, jaw, lips
 from agentface.deform.mouth.contact import ContactTables
 from agentface.deform.mouth.jaw import JawTables
@@ -41,7 +41,7 @@ class SkinTables(NamedTuple):
     jaw: JawTables
     contact: ContactTables
     creases: SquashTables
-    midpoints: BetweenTables
+    midpoints: MidpointTables
 
 
 class FaceTables(NamedTuple):

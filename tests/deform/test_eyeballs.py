@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from agentface.cli import cli
-from agentface.deform.eyes import eyeballs as eyes
+from agentface.deform.eyes import eyeballs
 from agentface.deform.eyes import eyeballs_compiled as compiled
 from agentface.errors import InvalidValueError
 from agentface.face import Face
@@ -17,7 +17,7 @@ from agentface.parameters import NAMES, PARAMETERS, FacePose, parameter
 from tests.heads import head_model
 
 FACES = {face: head_model(face) for face in ("amber", "onyx")}
-TABLES = {face: eyes.prepare(model) for face, model in FACES.items()}
+TABLES = {face: eyeballs.prepare(model) for face, model in FACES.items()}
 GAZE = ("gaze_yaw", "gaze_pitch", "gaze_vergence")
 ANGLES = st.tuples(*(st.floats(parameter(name).low, parameter(name).high, width=32) for name in GAZE))
 
@@ -30,7 +30,7 @@ def face(request):
 def rotations(face, angles, **others):
     pose = FacePose.of(**others).replace(dict(zip(GAZE, angles, strict=True)))
     out = np.zeros((2, 3, 3), np.float32)
-    eyes.apply(TABLES[face], pose.array, out)
+    eyeballs.apply(TABLES[face], pose.array, out)
     return out
 
 
@@ -43,7 +43,7 @@ def test_both_eyes_aim_at_the_point(across, up, ahead):
     for face, model in FACES.items():
         middle = model.eye_centre("l") * [0, 1, 1]
         point = middle + ahead * np.array([0.24 * across, 0.16 * up, 1.0])
-        out = rotations(face, eyes.toward(model, point))
+        out = rotations(face, eyeballs.toward(model, point))
         hole = np.radians([model.eyes.yaw_limit_deg, model.eyes.pitch_limit_deg])
         for side, turn in zip("lr", out.astype(np.float64), strict=True):
             wanted = point - model.eye_centre(side)
@@ -57,7 +57,7 @@ def test_both_eyes_aim_at_the_point(across, up, ahead):
 
 def test_a_near_point_makes_the_eyes_converge_and_a_far_one_does_not(face):
     middle = FACES[face].eye_centre("l") * [0, 1, 1]
-    near, far = (eyes.toward(FACES[face], middle + np.array([0, 0, ahead])) for ahead in (0.15, 100.0))
+    near, far = (eyeballs.toward(FACES[face], middle + np.array([0, 0, ahead])) for ahead in (0.15, 100.0))
     half = float(FACES[face].eye_centre("l")[0])
     assert near == pytest.approx((0, 0, math.atan2(half, 0.15)), abs=1e-7)
     assert far == pytest.approx((0, 0, 0), abs=1e-3)
@@ -70,7 +70,7 @@ def test_no_eye_leaves_its_hole_and_none_is_held_back_inside(angles):
         for side, inward in ((0, -1), (1, 1)):
             asked = np.array([values[tables.yaw] + inward * values[tables.vergence], values[tables.pitch]], np.float64)
             hole = np.array([tables.yaw_limit, tables.pitch_limit])
-            got = np.array(eyes.eye_angles(tables, values, side))
+            got = np.array(eyeballs.eye_angles(tables, values, side))
             assert np.linalg.norm(got / hole) <= 1 + 1e-9
             assert asked[0] * got[1] == pytest.approx(asked[1] * got[0], abs=1e-6)
             if np.linalg.norm(asked / hole) < 1:
@@ -107,14 +107,14 @@ def test_gaze_is_independent_of_the_muscles(face):
 @pytest.mark.parametrize("point", [(0, 0, -1), (0, 0, math.nan), (0, 1), (0, "a", 1)])
 def test_a_point_that_cannot_be_looked_at_is_refused(face, point):
     with pytest.raises(InvalidValueError, match="point"):
-        eyes.toward(FACES[face], point)
+        eyeballs.toward(FACES[face], point)
 
 
 def test_a_face_looks_at_a_point_and_then_afar():
     face = Face(FACES["amber"])
     face.look_at((0.1, 0.02, 0.4), fade=0.0)
     near = [face.pose[name] for name in GAZE]
-    assert near == pytest.approx(eyes.toward(FACES["amber"], (0.1, 0.02, 0.4)), abs=1e-6)
+    assert near == pytest.approx(eyeballs.toward(FACES["amber"], (0.1, 0.02, 0.4)), abs=1e-6)
     face.look_at((0.0, 5.0, 0.3), fade=0.0)
     assert face.pose["gaze_pitch"] == pytest.approx(parameter("gaze_pitch").high)
     face.set_gaze(10, 0, fade=0.0)

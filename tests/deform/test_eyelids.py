@@ -5,8 +5,7 @@ import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
-from agentface.deform.eyes import eyeballs as eyes
-from agentface.deform.eyes import eyelids
+from agentface.deform.eyes import eyeballs, eyelids
 from agentface.deform.eyes import eyelids_compiled as compiled
 from agentface.parameters import COUNT, NAMES, PARAMETERS, FacePose
 from agentface.studies.calibration.agreement import agreement
@@ -235,9 +234,9 @@ def test_closing_one_eye_squeezes_it_and_closing_both_does_not(face):
 
 
 def test_the_lids_take_the_gaze_that_the_eye_hole_leaves(face):
-    tables = eyes.prepare(FACES[face])
+    tables = eyeballs.prepare(FACES[face])
     values = FacePose.of(gaze_yaw=0.8, gaze_pitch=0.2).array
-    pitch = eyes.eye_angles(tables, values, 0)[1]
+    pitch = eyeballs.eye_angles(tables, values, 0)[1]
     np.testing.assert_allclose(moved(face, values)[TABLES[face].vertex[0]],
                                posed(face, gaze_pitch=pitch)[TABLES[face].vertex[0]], atol=1e-7)  # fmt: skip
 

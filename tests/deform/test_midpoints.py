@@ -4,7 +4,7 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from agentface.deform import midpoints as between
+from agentface.deform import midpoints
 from agentface.deform import midpoints_compiled as compiled
 from agentface.head.resample import subdivided
 from tests.heads import head_model
@@ -16,10 +16,10 @@ FINEST = subdivided(subdivided(MODEL))
 @settings(max_examples=5)
 @given(st.integers(0, 2**32))
 def test_both_forms_put_each_vertex_between_its_two(seed):
-    tables = between.prepare(FINEST)
+    tables = midpoints.prepare(FINEST)
     start = np.random.default_rng(seed).random(FINEST.vertices.shape, np.float32)
     points, same = start.copy(), start.copy()
-    between.apply(tables, points)
+    midpoints.apply(tables, points)
     compiled.apply(tables, same)
     np.testing.assert_array_equal(points, same)
     vertex, one, other = tables.rows.T
@@ -29,4 +29,4 @@ def test_both_forms_put_each_vertex_between_its_two(seed):
 
 
 def test_a_face_as_it_was_read_has_none():
-    assert between.prepare(MODEL).rows.shape == (0, 3)
+    assert midpoints.prepare(MODEL).rows.shape == (0, 3)

@@ -19,7 +19,7 @@ from typing import NamedTuple
 import numpy as np
 
 from agentface.conventions import SIDES, Floats, Indices
-from agentface.deform.eyes import eyeballs as eyes
+from agentface.deform.eyes import eyeballs
 from agentface.deform.eyes.eyeballs import EyesTables
 from agentface.deform.eyes.lid_fields import LidFields, lid_fields
 from agentface.deform.lanes import LANES
@@ -80,7 +80,7 @@ def prepare(model: HeadModel) -> EyelidsTables:
         tightening=np.array(indices_of("orbicularis_oculi_preseptalis"), np.int32),
         inner_brow=np.array(indices_of("frontalis_medialis"), np.int32),
         outer_brow=np.array(indices_of("frontalis_lateralis"), np.int32),
-        eyes=eyes.prepare(model),
+        eyes=eyeballs.prepare(model),
     )
 
 
@@ -108,7 +108,7 @@ def apply(tables: EyelidsTables, values: Floats, points: Floats) -> None:
             for level in coupled(closing[side], squeezing[side], closing[1 - side], squeezing[1 - side])
         )
         raised, o = min(_ONE, _TWO * s), np.float32(opening[side])
-        pitch = np.float32(eyes.eye_angles(tables.eyes, values, side)[1])
+        pitch = np.float32(eyeballs.eye_angles(tables.eyes, values, side)[1])
         pitch *= _ONE - LOOKING_UP * o * (pitch > 0)
         where, centre = tables.vertex[side].ravel(), tables.centre[side]
         at, rest = points[where], np.moveaxis(tables.rest[side], 1, 2).reshape(-1, 3)

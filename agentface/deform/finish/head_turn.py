@@ -14,7 +14,7 @@ from agentface.parameters import indices_of
 _NECK_DEPTH = -0.01  # m, of the axis behind the ears
 
 
-class HeadTables(NamedTuple):
+class HeadTurnTables(NamedTuple):
     """Where the head's angles stand in a pose, and about which point it turns.
 
     Attributes:
@@ -28,14 +28,14 @@ class HeadTables(NamedTuple):
     neck: Floats
 
 
-def prepare(model: HeadModel) -> HeadTables:
+def prepare(model: HeadModel) -> HeadTurnTables:
     """The tables of a face."""
     yaw, pitch, roll = (indices_of(name)[0] for name in ("head_yaw", "head_pitch", "head_roll"))
     neck = np.array([0.0, model.landmarks["gonion_l"][1], _NECK_DEPTH], np.float32)
-    return HeadTables(yaw, pitch, roll, neck)
+    return HeadTurnTables(yaw, pitch, roll, neck)
 
 
-def apply(tables: HeadTables, values: Floats, transform: Floats) -> None:
+def apply(tables: HeadTurnTables, values: Floats, transform: Floats) -> None:
     """Write R p + (n - R n) into ``transform (4, 4)``, n the neck.
 
     R turns to the person's left, then up, then tilts to the left: R = Y(yaw) X(-pitch) Z(-roll), all three positive

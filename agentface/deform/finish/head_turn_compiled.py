@@ -5,12 +5,12 @@ from __future__ import annotations
 import math
 
 from agentface.conventions import Floats
-from agentface.deform.finish.head_turn import HeadTables
+from agentface.deform.finish.head_turn import HeadTurnTables
 from agentface.kernel import kernel
 
 
 @kernel(error_model="numpy")
-def apply(tables: HeadTables, values: Floats, transform: Floats) -> None:
+def apply(tables: HeadTurnTables, values: Floats, transform: Floats) -> None:
     """Write the turn of the head about the neck into ``transform (4, 4)``."""
     yaw, pitch, roll = float(values[tables.yaw]), float(values[tables.pitch]), float(values[tables.roll])
     cy, sy, cp, sp, cr, sr = (

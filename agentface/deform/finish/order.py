@@ -11,10 +11,10 @@ from agentface.conventions import Floats, Indices
 from agentface.deform.eyes import eyeballs
 from agentface.deform.eyes.eyeballs import EyesTables
 from agentface.deform.finish import head_turn, neck, teeth, wrinkle_normals, wrinkles
-from agentface.deform.finish.head_turn import HeadTables
+from agentface.deform.finish.head_turn import HeadTurnTables
 from agentface.deform.finish.neck import NeckTables
 from agentface.deform.finish.teeth import TeethTables
-from agentface.deform.finish.wrinkle_normals import ShadingTables
+from agentface.deform.finish.wrinkle_normals import WrinkleNormalTables
 from agentface.deform.finish.wrinkles import WrinkleTables
 from agentface.deform.geometry import FaceArrays
 from agentface.head.model import HeadModel
@@ -38,10 +38,10 @@ class FinishTables(NamedTuple):
 
     triangles: Indices
     wrinkles: WrinkleTables
-    shading: ShadingTables
+    wrinkle_normals: WrinkleNormalTables
     eyes: EyesTables
     teeth: TeethTables
-    head: HeadTables
+    head: HeadTurnTables
     neck: NeckTables
 
 
@@ -51,7 +51,7 @@ def prepare(model: HeadModel) -> FinishTables:
     return FinishTables(
         triangles=np.ascontiguousarray(model.triangles, np.int32),
         wrinkles=of_wrinkles,
-        shading=wrinkle_normals.prepare(model, of_wrinkles),
+        wrinkle_normals=wrinkle_normals.prepare(model, of_wrinkles),
         eyes=eyeballs.prepare(model),
         teeth=teeth.prepare(model),
         head=head_turn.prepare(model),
@@ -69,7 +69,9 @@ def finish(first: int, last: int, tables: FinishTables, values: Floats, face: Fa
             wrinkles.heights(tables.wrinkles, values, face.wrinkles)
             wrinkles.raise_vertices(tables.wrinkles, face.wrinkles, face.smooth_normals, face.vertices)
         elif stage == FinishStage.NORMALS:
-            wrinkle_normals.apply(tables.shading, face.wrinkles, face.vertices, face.smooth_normals, face.normals)
+            wrinkle_normals.apply(
+                tables.wrinkle_normals, face.wrinkles, face.vertices, face.smooth_normals, face.normals
+            )
         elif stage == FinishStage.EYES:
             eyeballs.apply(tables.eyes, values, face.eye_rotations)
         elif stage == FinishStage.TEETH:

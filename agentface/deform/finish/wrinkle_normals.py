@@ -12,7 +12,7 @@ from agentface.head.model import HeadModel
 from agentface.mesh.normals import vertex_normals
 
 
-class ShadingTables(NamedTuple):
+class WrinkleNormalTables(NamedTuple):
     """What of the skin can change when wrinkles rise.
 
     Attributes:
@@ -30,16 +30,16 @@ class ShadingTables(NamedTuple):
     border: Indices
 
 
-def prepare(model: HeadModel, wrinkles: WrinkleTables) -> ShadingTables:
+def prepare(model: HeadModel, wrinkles: WrinkleTables) -> WrinkleNormalTables:
     """The tables of a face."""
     triangles = np.ascontiguousarray(model.triangles, np.int32)
     raised = np.unique(wrinkles.vertices)
     near = np.unique(triangles[np.isin(triangles, raised).any(axis=1)])
     around = triangles[np.isin(triangles, near).any(axis=1)]
-    return ShadingTables(triangles, raised, near, around, np.setdiff1d(around, near))
+    return WrinkleNormalTables(triangles, raised, near, around, np.setdiff1d(around, near))
 
 
-def apply(tables: ShadingTables, heights: Floats, vertices: Floats, smooth: Floats, out: Floats) -> None:
+def apply(tables: WrinkleNormalTables, heights: Floats, vertices: Floats, smooth: Floats, out: Floats) -> None:
     """Write to ``out (V, 3)`` the unit normals of ``vertices (V, 3)`` m raised by ``heights (V,)`` m.
 
     ``smooth (V, 3)`` are those before; where nothing has risen they are taken as they are.

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from agentface.conventions import Floats
-from agentface.deform.finish.wrinkle_normals import ShadingTables
+from agentface.deform.finish.wrinkle_normals import WrinkleNormalTables
 from agentface.kernel import kernel
 from agentface.mesh.normals_compiled import add_areas, make_unit
 
@@ -15,7 +15,7 @@ _ZERO = np.float32(0.0)
 
 
 @kernel(error_model="numpy", fastmath=True)
-def apply(tables: ShadingTables, heights: Floats, vertices: Floats, smooth: Floats, out: Floats) -> None:
+def apply(tables: WrinkleNormalTables, heights: Floats, vertices: Floats, smooth: Floats, out: Floats) -> None:
     """Write to ``out (V, 3)`` the unit normals of ``vertices (V, 3)``, raised by ``heights (V,)``."""
     before, after = smooth.ravel(), out.ravel()
     for index in range(before.shape[0]):
@@ -25,7 +25,7 @@ def apply(tables: ShadingTables, heights: Floats, vertices: Floats, smooth: Floa
 
 
 @kernel(error_model="numpy", fastmath=True)
-def _renew(tables: ShadingTables, vertices: Floats, smooth: Floats, out: Floats) -> None:
+def _renew(tables: WrinkleNormalTables, vertices: Floats, smooth: Floats, out: Floats) -> None:
     for place in range(tables.near.shape[0]):
         for axis in range(3):
             out[tables.near[place], axis] = _ZERO
@@ -39,7 +39,7 @@ def _renew(tables: ShadingTables, vertices: Floats, smooth: Floats, out: Floats)
 
 
 @kernel(error_model="numpy")
-def _highest(tables: ShadingTables, heights: Floats) -> Any:
+def _highest(tables: WrinkleNormalTables, heights: Floats) -> Any:
     highest = _ZERO
     for place in range(tables.raised.shape[0]):
         highest = max(highest, heights[tables.raised[place]])

@@ -95,8 +95,7 @@ class Combiner:
         self._compiled = compiled
         if not compiled:
             return
-        from agentface.deform.muscles import blocks
-        from agentface.deform.muscles import combine_compiled as contraction
+        from agentface.deform.muscles import blocks, combine_compiled
 
         self._blocks = blocks.pack(rest, muscles)
         count = len(muscles)
@@ -104,7 +103,7 @@ class Combiner:
         shape = {"parallel": math.ceil(1.0 / STEP), "sequential": count, "summed": 1}[method]
         self._parts = np.zeros((shape, count), dtype=np.float32)
         self._levels = np.zeros(count, dtype=np.float64)
-        self._kernels = contraction
+        self._kernels = combine_compiled
 
     def apply(self, contractions: Points, out: Floats) -> None:
         """Writes the moved vertices to ``out``; where no muscle acts they are the rest vertices, bit for bit.
