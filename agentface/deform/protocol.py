@@ -55,7 +55,12 @@ class DeformerFactory(Protocol):
 Factory: TypeAlias = DeformerFactory | str
 """A factory, or ``module:name`` of one, which is imported when it is first asked for."""
 DEFAULT_DEFORMER = "geometric"
-_DEFORMERS: dict[str, Factory] = {DEFAULT_DEFORMER: "agentface.deform.pipeline:GeometricDeformer"}
+_DEFORMERS: dict[str, Factory] = {
+    DEFAULT_DEFORMER: "agentface.deform.pipeline:GeometricDeformer",
+    "tissue": "agentface.tissue.deformer:TissueDeformer",
+    "tissue-semi-implicit": "agentface.tissue.deformer:SemiImplicitTissue",
+    "tissue-adaptive": "agentface.tissue.deformer:AdaptiveTissue",
+}
 
 
 def register(name: str, factory: Factory) -> Callable[[], None]:

@@ -80,6 +80,28 @@ def store(typing: Any, array: Any, index: Any, vector: Any) -> Any:
 
 
 @_intrinsic
+def gather(typing: Any, array: Any, indices: Any, at: Any, offset: Any) -> Any:
+    """The elements ``indices[at + lane] + offset`` of a float32 array; ``indices`` are int32."""
+
+    def generate(context: Any, builder: Any, signature: Any, args: Any) -> Any:
+        of_array, of_indices, of_at, of_offset = signature.args
+        data = context.make_array(of_array)(context, builder, args[0]).data
+        places = context.make_array(of_indices)(context, builder, args[1]).data
+        start, more = (
+            context.cast(builder, value, kind, types.intp)
+            for value, kind in ((args[2], of_at), (args[3], of_offset))
+        )
+        start, data = builder.gep(places, [start]), builder.gep(data, [more])
+        vector = ir.Constant(_VECTOR, ir.Undefined)
+        for lane in range(LANES):
+            index = builder.sext(builder.load(builder.gep(start, [_I32(lane)])), ir.IntType(64))
+            vector = builder.insert_element(vector, builder.load(builder.gep(data, [index])), _I32(lane))
+        return vector
+
+    return _TYPE(array, indices, at, offset), generate
+
+
+@_intrinsic
 def splat(typing: Any, scalar: Any) -> Any:
     """A float32 in every lane."""
 

@@ -1,0 +1,88 @@
+"""The layered tissue as a deformer: muscles pull on tissue, and the skin goes where that goes."""
+
+from __future__ import annotations
+
+from functools import partial
+
+import numpy as np
+
+from agentface.conventions import Floats
+from agentface.deform import order
+from agentface.deform import tables as skin_tables
+from agentface.deform.finish import order as last_part
+from agentface.deform.finish.order import FinishStage
+from agentface.deform.geometry import FaceGeometry
+from agentface.deform.order import Stage
+from agentface.head.model import HeadModel
+from agentface.parameters import FacePose, check_pose
+from agentface.tissue import skin, tables
+from agentface.tissue.solvers.equilibrium import equilibrium
+from agentface.tissue.solvers.solver import DEFAULT_SOLVER, make_solver
+
+
+class TissueDeformer:
+    """The physical face of Zhang, Prakash and Sung: it has mass, and each pose has one equilibrium.
+
+    Tissue takes the place of the geometric face's vector muscles, volumes and limits; orbicularis oris, lids, jaw,
+    lips, contact, wrinkles and neck are the same. It is solved with the jaw closed; the jaw carries it along.
+
+    Args:
+        model: the face; its folder must have a ``tissue.yaml``.
+        solver: one of :func:`agentface.tissue.solvers.solver.solver_names`.
+        compiled: False for numpy, the same to 0.01 mm, seconds a frame.
+
+    Raises:
+        DataError: with the faults of ``tissue.yaml``, or that there is none.
+        UnknownNameError: for a solver that is not there.
+    """
+
+    def __init__(self, model: HeadModel, solver: str = DEFAULT_SOLVER, *, compiled: bool = True) -> None:
+        self._model = model
+        self._tissue = tables.of(model)
+        self._tables = skin_tables.of(model)
+        self._points = self._tables.skin.rest.copy()
+        self._deform, self._finish, self._put = order.deform, last_part.finish, skin.put
+        if compiled:
+            from agentface.deform import order_compiled
+            from agentface.tissue import skin_compiled
+
+            self._deform, self._finish, self._put = order_compiled.deform, order_compiled.finish, skin_compiled.put
+        self._solver = make_solver(solver, self._tissue)
+        self._shown = self._new_geometry()
+
+    def reset(self, pose: FacePose) -> None:
+        """Stand still in ``pose``; raises InvalidValueError for a parameter outside its range."""
+        self._solver.reset(self._contractions(pose))
+
+    def step(self, pose: FacePose, dt: float) -> FaceGeometry:
+        """The face after ``dt`` s on its way to ``pose``, in arrays that the next step overwrites.
+
+        Raises InvalidValueError for a parameter outside its range.
+        """
+        self._solver.step(self._contractions(pose), dt)
+        self._write(self._solver.positions, pose.array, self._shown)
+        return self._shown
+
+    def at(self, pose: FacePose) -> FaceGeometry:
+        """The equilibrium in ``pose``, in arrays of its own; raises InvalidValueError for what is out of range."""
+        geometry = self._new_geometry()
+        self._write(equilibrium(self._tissue, self._contractions(pose)), pose.array, geometry)
+        return geometry
+
+    def _contractions(self, pose: FacePose) -> np.typing.NDArray[np.float64]:
+        check_pose(pose.array)
+        return self._tissue.drive.contractions(pose.array.astype(np.float64))
+
+    def _write(self, positions: Floats, values: Floats, geometry: FaceGeometry) -> None:
+        self._put(self._tissue.epidermis, positions, self._points)
+        self._deform(int(Stage.ORBICULARIS_ORIS), int(Stage.MIDPOINTS), self._tables.skin, values, self._points)
+        geometry.vertices[:] = self._points[: len(geometry.vertices)]
+        first, last = int(FinishStage.SMOOTH_NORMALS), int(FinishStage.NECK)
+        self._finish(first, last, self._tables.finish, values, geometry.arrays())
+
+    def _new_geometry(self) -> FaceGeometry:
+        return FaceGeometry.at_rest(self._model.vertices, self._model.normals, len(self._model.trains))
+
+
+SemiImplicitTissue = partial(TissueDeformer, solver="semi_implicit")
+AdaptiveTissue = partial(TissueDeformer, solver="adaptive")

@@ -1,0 +1,267 @@
+"""Block descent: each column, in its turn, goes to where its nine coordinates are in equilibrium with the others.
+
+A Newton step a column on the energy, by the newest places of its neighbours (Gauss and Seidel), longer than 1 to
+converge faster (over-relaxation). Columns of a batch are not beside each other and go together.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from agentface.conventions import Floats, Indices
+from agentface.deform.lanes import LANES
+from agentface.deform.simd import inverse_root, larger, largest, load, splat, store
+from agentface.kernel import kernel
+from agentface.tissue.columns import NODES, Columns
+from agentface.tissue.forces_compiled import held
+from agentface.tissue.springs_compiled import ONE, ZERO, column, neighbours, pressed, prism, tension
+
+_COMPONENTS, _SPRINGS = 3, 7
+_TRIANGLE = NODES * (NODES + 1) // 2
+_ROW = tuple(row * (row + 1) // 2 for row in range(NODES))
+"""Where each row of a lower triangle begins."""
+_SINGULAR = np.float32(1e-6)
+"""What a lane without a column has on its diagonal."""
+
+
+@kernel(error_model="numpy", inline="always", fastmath=True)
+def bent(state, node, other, pull, inverse, law):  # type: ignore[no-untyped-def]
+    """A node's force (3) and block of stiffness (6: xx yx yy zx zy zz) with one spring more."""
+    x, y, z = node[0] - other[0], node[1] - other[1], node[2] - other[2]
+    side, slope, over = tension(x * x + y * y + z * z, pull, inverse, law)
+    least = larger(side, splat(ZERO))
+    more = (slope - least) * over * over
+    mx, my = more * x, more * y
+    return (
+        state[0] - side * x,
+        state[1] - side * y,
+        state[2] - side * z,
+        state[3] + least + mx * x,
+        state[4] + mx * y,
+        state[5] + least + my * y,
+        state[6] + mx * z,
+        state[7] + my * z,
+        state[8] + least + more * z * z,
+    )
+
+
+@kernel(error_model="numpy", inline="always", fastmath=True)
+def joined(node, other, pull, inverse, law):  # type: ignore[no-untyped-def]
+    """What a spring within a column adds to its two nodes: the force on the first, and the block of stiffness."""
+    zero = splat(ZERO)
+    return bent((zero, zero, zero, zero, zero, zero, zero, zero, zero), node, other, pull, inverse, law)
+
+
+@kernel(error_model="numpy", inline="always", fastmath=True)
+def plus(state, more, sign):  # type: ignore[no-untyped-def]
+    """``state`` with the force of ``more``, times ``sign``, and its stiffness."""
+    return (
+        state[0] + sign * more[0],
+        state[1] + sign * more[1],
+        state[2] + sign * more[2],
+        state[3] + more[3],
+        state[4] + more[4],
+        state[5] + more[5],
+        state[6] + more[6],
+        state[7] + more[7],
+        state[8] + more[8],
+    )
+
+
+@kernel(error_model="numpy", inline="always", fastmath=True)
+def pushed(state, x, y, z, push, slope):  # type: ignore[no-untyped-def]
+    """``state`` with a prism's force along its gradient and the stiffness of its pressure."""
+    sx, sy = slope * x, slope * y
+    return (
+        state[0] + push * x,
+        state[1] + push * y,
+        state[2] + push * z,
+        state[3] + sx * x,
+        state[4] + sx * y,
+        state[5] + sy * y,
+        state[6] + sx * z,
+        state[7] + sy * z,
+        state[8] + slope * z * z,
+    )
+
+
+@kernel(error_model="numpy", fastmath=True)
+def step(matrix: Floats, force: Floats) -> None:
+    """Solves ``matrix`` times a step = ``force`` for LANES columns, in place, by Cholesky's factors.
+
+    ``matrix (45, LANES)`` is the lower triangle, row after row; ``force (9, LANES)`` becomes the step.
+    """
+    for i in range(NODES):
+        row = i * (i + 1) // 2
+        for j in range(i):
+            other = j * (j + 1) // 2
+            value = load(matrix, (row + j) * LANES)
+            for k in range(j):
+                value = value - load(matrix, (row + k) * LANES) * load(matrix, (other + k) * LANES)
+            store(matrix, (row + j) * LANES, value * load(matrix, (other + j) * LANES))
+        value = load(matrix, (row + i) * LANES)
+        for k in range(i):
+            part = load(matrix, (row + k) * LANES)
+            value = value - part * part
+        store(matrix, (row + i) * LANES, inverse_root(larger(value, splat(_SINGULAR))))
+        value = load(force, i * LANES)
+        for k in range(i):
+            value = value - load(matrix, (row + k) * LANES) * load(force, k * LANES)
+        store(force, i * LANES, value * load(matrix, (row + i) * LANES))
+    for back in range(NODES):
+        i = NODES - 1 - back
+        value = load(force, i * LANES)
+        for k in range(i + 1, NODES):
+            value = value - load(matrix, (k * (k + 1) // 2 + i) * LANES) * load(force, k * LANES)
+        store(force, i * LANES, value * load(matrix, (i * (i + 1) // 2 + i) * LANES))
+
+
+@kernel(error_model="numpy", inline="always", fastmath=True)
+def put_block(matrix, node, state):  # type: ignore[no-untyped-def]
+    """Writes a node's own block into the lower triangle."""
+    row = 3 * node
+    store(matrix, (row * (row + 1) // 2 + row) * LANES, state[3])
+    row += 1
+    at = (row * (row + 1) // 2 + 3 * node) * LANES
+    store(matrix, at, state[4])
+    store(matrix, at + LANES, state[5])
+    row += 1
+    at = (row * (row + 1) // 2 + 3 * node) * LANES
+    store(matrix, at, state[6])
+    store(matrix, at + LANES, state[7])
+    store(matrix, at + 2 * LANES, state[8])
+
+
+@kernel(error_model="numpy", inline="always", fastmath=True)
+def put_between(matrix, node, other, state):  # type: ignore[no-untyped-def]
+    """Writes the block between two nodes of a column that one spring joins: its stiffness, with its sign turned."""
+    zero = splat(ZERO)
+    row = 3 * node
+    at = (row * (row + 1) // 2 + 3 * other) * LANES
+    store(matrix, at, zero - state[3])
+    store(matrix, at + LANES, zero - state[4])
+    store(matrix, at + 2 * LANES, zero - state[6])
+    row += 1
+    at = (row * (row + 1) // 2 + 3 * other) * LANES
+    store(matrix, at, zero - state[4])
+    store(matrix, at + LANES, zero - state[5])
+    store(matrix, at + 2 * LANES, zero - state[7])
+    row += 1
+    at = (row * (row + 1) // 2 + 3 * other) * LANES
+    store(matrix, at, zero - state[6])
+    store(matrix, at + LANES, zero - state[7])
+    store(matrix, at + 2 * LANES, zero - state[8])
+
+
+@kernel(error_model="numpy", fastmath=True)
+def sweep(
+    columns: Columns, positions: Floats, loads: Floats, batches: Indices, count: int, longer: float, moved: Floats
+) -> None:
+    """One step of each of the first ``count`` of ``batches``, ``longer`` times Newton's.
+
+    ``positions`` are moved in place; ``loads (B, 3, LANES)`` act on the hypodermis; ``moved (B,)`` gets the largest
+    step of each batch in mm, squared.
+    """
+    law = columns.law
+    rho, whole = law[3], int(law[5]) == 0
+    pull, inverse = columns.pull, columns.inverse
+    matrix, force = np.empty((_TRIANGLE, LANES), np.float32), np.empty((NODES, LANES), np.float32)
+    zero = splat(ZERO)
+    none = (zero, zero, zero, zero, zero, zero, zero, zero, zero)
+    relax = np.float32(longer)
+    for turn in range(count):
+        batch = batches[turn]
+        own = column(positions, batch)
+        e, d, h = (own[0], own[1], own[2]), (own[3], own[4], own[5]), (own[6], own[7], own[8])
+        steady = column(columns.steady, batch)
+        epidermis = (steady[0], steady[1], steady[2], zero, zero, zero, zero, zero, zero)
+        dermis = (steady[3], steady[4], steady[5], zero, zero, zero, zero, zero, zero)
+        hypodermis = (steady[6], steady[7], steady[8], zero, zero, zero, zero, zero, zero)
+        c0, c1, c2, c3, c4, c5, c6, c7, c8 = none
+        first, last = columns.first[batch], columns.first[batch + 1]
+        before = neighbours(positions, columns.neighbour, last - 1)
+        for row in range(first, last):
+            there = neighbours(positions, columns.neighbour, row)
+            if whole:
+                volume, slopes = prism(own, before, there)
+                over = load(columns.volume, (last - 1 if row == first else row - 1) * LANES)
+                pressure, slope = pressed(volume * over)
+                exists = over * over * inverse_root(over * over * over * over + np.float32(1e-20))
+                push = zero - rho * exists * pressure
+                slope = rho * slope * over
+                ux, uy, uz, lx, ly, lz = slopes
+                epidermis = pushed(epidermis, ux, uy, uz, push, slope)
+                hypodermis = pushed(hypodermis, lx, ly, lz, push, slope)
+                sx, sy, sz = slope * lx, slope * ly, slope * lz
+                c0, c1, c2 = c0 + sx * ux, c1 + sx * uy, c2 + sx * uz
+                c3, c4, c5 = c3 + sy * ux, c4 + sy * uy, c5 + sy * uz
+                c6, c7, c8 = c6 + sz * ux, c7 + sz * uy, c8 + sz * uz
+            before = there
+            ne, nd, nh = (there[0], there[1], there[2]), (there[3], there[4], there[5]), (there[6], there[7], there[8])
+            at = row * _SPRINGS * LANES
+            epidermis = bent(epidermis, e, ne, load(pull, at), load(inverse, at), law)
+            at += LANES
+            dermis = bent(dermis, d, nd, load(pull, at), load(inverse, at), law)
+            at += LANES
+            hypodermis = bent(hypodermis, h, nh, load(pull, at), load(inverse, at), law)
+            at += LANES
+            epidermis = bent(epidermis, e, nd, load(pull, at), load(inverse, at), law)
+            at += LANES
+            dermis = bent(dermis, d, ne, load(pull, at), load(inverse, at), law)
+            at += LANES
+            dermis = bent(dermis, d, nh, load(pull, at), load(inverse, at), law)
+            at += LANES
+            hypodermis = bent(hypodermis, h, nd, load(pull, at), load(inverse, at), law)
+        at = 2 * batch * LANES
+        upper = joined(e, d, load(columns.own_pull, at), load(columns.own_inverse, at), law)
+        lower = joined(d, h, load(columns.own_pull, at + LANES), load(columns.own_inverse, at + LANES), law)
+        epidermis = plus(epidermis, upper, ONE)
+        dermis = plus(plus(dermis, upper, np.float32(-1.0)), lower, ONE)
+        hypodermis = plus(hypodermis, lower, np.float32(-1.0))
+        fx, fy, fz, along, across = held(columns, batch, columns.rest, h)
+        normal = batch * _COMPONENTS * LANES
+        nx, ny, nz = (
+            load(columns.normal, normal),
+            load(columns.normal, normal + LANES),
+            load(columns.normal, normal + 2 * LANES),
+        )
+        hypodermis = pushed(hypodermis, nx, ny, nz, zero, across - along)
+        put_block(matrix, 0, epidermis)
+        put_block(matrix, 1, dermis)
+        put_block(
+            matrix,
+            2,
+            (
+                zero, zero, zero,
+                hypodermis[3] + along, hypodermis[4], hypodermis[5] + along,
+                hypodermis[6], hypodermis[7], hypodermis[8] + along,
+            ),
+        )  # fmt: skip
+        put_between(matrix, 1, 0, upper)
+        put_between(matrix, 2, 1, lower)
+        at = (6 * 7 // 2) * LANES
+        store(matrix, at, c0)
+        store(matrix, at + LANES, c1)
+        store(matrix, at + 2 * LANES, c2)
+        at = (7 * 8 // 2) * LANES
+        store(matrix, at, c3)
+        store(matrix, at + LANES, c4)
+        store(matrix, at + 2 * LANES, c5)
+        at = (8 * 9 // 2) * LANES
+        store(matrix, at, c6)
+        store(matrix, at + LANES, c7)
+        store(matrix, at + 2 * LANES, c8)
+        for component in range(3):
+            store(force, component * LANES, epidermis[component])
+            store(force, (3 + component) * LANES, dermis[component])
+        store(force, 6 * LANES, hypodermis[0] + fx + load(loads, normal))
+        store(force, 7 * LANES, hypodermis[1] + fy + load(loads, normal + LANES))
+        store(force, 8 * LANES, hypodermis[2] + fz + load(loads, normal + 2 * LANES))
+        step(matrix, force)
+        at = batch * NODES * LANES
+        most = zero
+        for component in range(NODES):
+            move = relax * load(force, component * LANES)
+            most = larger(most, move * move)
+            store(positions, at + component * LANES, load(positions, at + component * LANES) + move)
+        moved[batch] = largest(most)

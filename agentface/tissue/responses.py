@@ -1,0 +1,42 @@
+"""What each muscle alone does to the tissue, kept as a polynomial of its contraction: where equilibria are looked for."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from agentface.conventions import Doubles, Floats
+from agentface.tissue.columns import Columns
+from agentface.tissue.solvers.equilibrium import relax
+
+LEVELS = (0.5, 1.0)
+"""Contractions whose equilibria the polynomials go through, beside rest."""
+_POWERS = np.arange(1, len(LEVELS) + 1)
+
+
+class Responses(NamedTuple):
+    """``columns (46, N)`` float32 mm: for each muscle, what its contraction counts for, and that squared."""
+
+    columns: Floats
+
+    def powers(self, contractions: Doubles) -> Floats:
+        """``(46,)``: what each column counts for."""
+        return (contractions[:, None] ** _POWERS).ravel().astype(np.float32)
+
+
+def measure(columns: Columns, loads: Floats) -> Responses:
+    """The responses to ``loads (23, B, 3, LANES)``, from equilibria."""
+    moving = len(columns.first) - 1
+    inverse = np.linalg.inv(np.array(LEVELS)[:, None] ** _POWERS)
+    rows = []
+    for load in loads:
+        positions, moved, before = columns.rest.copy(), [], 0.0
+        for level in LEVELS:
+            if before:
+                positions[:moving] += (level / before - 1.0) * moved[-1].reshape(positions[:moving].shape)
+            relax(columns, positions, load * np.float32(level), tolerance=1e-3)
+            moved.append((positions - columns.rest)[:moving].ravel())
+            before = level
+        rows += list(inverse @ np.stack(moved))
+    return Responses(np.array(rows, np.float32))

@@ -1,0 +1,87 @@
+"""The default solver: the muscles swing, and the tissue is in equilibrium with them at every instant.
+
+A frame begins where the stored responses of the muscles lead from the last one; then a few sweeps of block descent
+correct what the responses do not know: how muscles add up.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from agentface.conventions import Doubles, Floats
+from agentface.tissue.solvers.equilibrium import LONGER, equilibrium
+from agentface.tissue.tables import TissueTables
+
+SWEEPS = 3
+"""Sweeps over the whole tissue a frame."""
+_RESTLESS_MM = 0.004
+"""A batch that moved as far, and what lies round it, moves again before the frame ends."""
+_MORE = 2.0
+"""Sweeps that may go into that, at most."""
+_STILL, _STILL_SPEED = 1e-3, 0.02
+"""A contraction that is this near to what is asked of it, and this slow (1/s), is there."""
+_SETTLED_MM = 2e-4
+
+
+class BlockDescent:
+    """Equilibria that follow swinging muscles."""
+
+    def __init__(self, tables: TissueTables) -> None:
+        self._tables = tables
+        self._moving = len(tables.columns.first) - 1
+        self.positions: Floats = tables.columns.rest.copy()
+        count = len(tables.loads)
+        self._asked, self._place, self._speed = np.zeros(count), np.zeros(count), np.zeros(count)
+        self._powers: Floats = tables.responses.powers(self._place)
+        self._batches, self._moved = np.arange(self._moving, dtype=np.int32), np.zeros(self._moving, np.float32)
+        self._settled = True
+
+    def reset(self, contractions: Doubles) -> None:
+        """Stand still in the equilibrium of ``contractions (23,)``."""
+        self.positions[:] = equilibrium(self._tables, contractions)
+        self._asked, self._place = contractions.copy(), contractions.copy()
+        self._speed = np.zeros_like(self._place)
+        self._powers = self._tables.responses.powers(self._place)
+        self._settled = True
+
+    def step(self, contractions: Doubles, dt: float) -> None:
+        """Go on by ``dt`` s: swing, and follow."""
+        before = self._place
+        self._place, self._speed = self._tables.swing.step(before, self._speed, self._asked, contractions, dt)
+        there = (np.abs(self._place - contractions) < _STILL) & (np.abs(self._speed) < _STILL_SPEED)
+        if there.all():
+            self._place, self._speed = contractions.copy(), np.zeros_like(before)
+        self._asked = contractions.copy()
+        if not np.array_equal(self._place, before):
+            self.follow(self._place)
+        elif not self._settled:
+            self._settle()
+
+    def follow(self, contractions: Doubles) -> None:
+        """Near to the equilibrium of ``contractions``, from where the tissue is."""
+        from agentface.tissue.descent_compiled import sweep
+
+        tables = self._tables
+        if not contractions.any():
+            self.positions[:] = tables.columns.rest
+            self._powers[:] = 0.0
+            self._settled = True
+            return
+        powers = tables.responses.powers(contractions)
+        ahead = (powers - self._powers) @ tables.responses.columns
+        self._powers = powers
+        self.positions[: self._moving] += ahead.reshape(self.positions[: self._moving].shape)
+        loads = np.tensordot(contractions.astype(np.float32), tables.loads, 1)
+        for _ in range(SWEEPS):
+            sweep(tables.columns, self.positions, loads, self._batches, self._moving, LONGER, self._moved)
+        self._settled = False
+
+    def _settle(self) -> None:
+        """Goes on to the equilibrium of contractions that do not change."""
+        from agentface.tissue.descent_compiled import sweep
+
+        tables = self._tables
+        loads = np.tensordot(self._place.astype(np.float32), tables.loads, 1)
+        sweep(tables.columns, self.positions, loads, self._batches, self._moving, LONGER, self._moved)
+        sweep(tables.columns, self.positions, loads, self._batches, self._moving, 1.0, self._moved)
+        self._settled = float(self._moved.max()) < _SETTLED_MM**2

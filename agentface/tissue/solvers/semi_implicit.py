@@ -1,0 +1,55 @@
+"""The paper's semi-implicit integration of the whole tissue (Zhang, Prakash and Sung, section 4)."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from agentface.conventions import Doubles, Floats
+from agentface.tissue.solvers.equilibrium import equilibrium
+from agentface.tissue.tables import TissueTables
+
+STABLE = 0.12
+"""The longest time step that no lattice tried has diverged with, in units of the root of mass over a stiffness of 1."""
+
+
+def stable_step(tables: TissueTables) -> float:
+    """The longest time step, in s, that is taken; longer ones are divided."""
+    return STABLE * math.sqrt(tables.mass)
+
+
+class SemiImplicit:
+    """Eq. 12 and 13 on every node: mass, inertia and all."""
+
+    def __init__(self, tables: TissueTables) -> None:
+        self._tables = tables
+        self._moving = len(tables.columns.first) - 1
+        self.positions: Floats = tables.columns.rest.copy()
+        self._ahead = self.positions.copy()
+        self._velocities: Floats = np.zeros_like(self.positions[: self._moving])
+        self._contractions = np.zeros(len(tables.loads))
+
+    def reset(self, contractions: Doubles) -> None:
+        """Stand still in the equilibrium of ``contractions (23,)``."""
+        self.positions[:] = equilibrium(self._tables, contractions)
+        self._ahead[:] = self.positions
+        self._velocities[:] = 0.0
+        self._contractions = contractions.copy()
+
+    def step(self, contractions: Doubles, dt: float) -> None:
+        """Go on by ``dt`` s, in as many equal steps as stability asks for."""
+        count = max(1, math.ceil(dt / stable_step(self._tables) - 1e-9))
+        start, change = self._contractions, contractions - self._contractions
+        for index in range(1, count + 1 if dt > 0.0 else 1):
+            self.iterate(start + index / count * change, dt / count)
+        self._contractions = contractions.copy()
+
+    def iterate(self, contractions: Doubles, dt: float) -> None:
+        """One step of ``dt`` s, not longer than :func:`stable_step`."""
+        from agentface.tissue.solvers.semi_implicit_compiled import advance
+
+        tables = self._tables
+        loads = np.tensordot(contractions.astype(np.float32), tables.loads, 1)
+        state = (self.positions, self._velocities, self._ahead, loads)
+        advance(tables.columns, *state, self._moving, dt, tables.mass, tables.drag)
