@@ -103,8 +103,8 @@ class HoldTable(Table):
 class SkullTable(Table):
     """What holds the tissue: springs to the bone ``along`` and ``across`` the skin, for 8 mm2, and ``contact`` with it.
 
-    ``holds`` say how much more, or less, the skin over a landmark is held. The skull is fitted to the depths; then it is
-    rotated, scaled about its centre, and translated, as the paper's user does.
+    ``holds`` say how much more, or less, the skin over a landmark is held. The skull is fitted to the depths; then it
+    is rotated, scaled about its centre, and translated, as the paper's user does.
     """
 
     along: _Stiffness
@@ -264,6 +264,8 @@ def _check_muscles(document: Document, muscles: dict[str, Any]) -> None:
 
 
 NAMES: tuple[str, ...] = tuple(
-    name if name == UNPAIRED else f"{name}_{side}" for name in TISSUE_MUSCLES for side in ("m" if name == UNPAIRED else SIDES)
+    name if name == UNPAIRED else f"{name}_{side}"
+    for name in TISSUE_MUSCLES
+    for side in ("m" if name == UNPAIRED else SIDES)
 )
 """The 23 muscles with their sides, in the order of forces and contractions."""

@@ -34,7 +34,13 @@ _LOG_STRENGTH = -5.0, 4.6
 _DIGITS = 4
 _TOGETHER = {"levator_alaeque_nasi": {"corrugator": 0.5}}
 """What else contracts in the action unit that a muscle is fitted to."""
-_PARTS = {"zygomaticus_major": 1.15, "risorius": 1.05, "mentalis": 1.3, "orbicularis_oculi": 0.9, "orbicularis_oris": 0.3}
+_PARTS = {
+    "zygomaticus_major": 1.15,
+    "risorius": 1.05,
+    "mentalis": 1.3,
+    "orbicularis_oculi": 0.9,
+    "orbicularis_oris": 0.3,
+}
 """Of the artists' shape: what muscle and tissue are to make of it; the lips' own model has the rest of pucker."""
 
 
@@ -56,7 +62,12 @@ def knobs(row: MuscleRow) -> list[Knob]:
             for axis in range(3)
         ]
         if isinstance(row, SheetRow):
-            return [*result, Knob(("half_width",), 0.11, 0.76), Knob(("above",), 0.11, 1.14), Knob(("below",), 0.08, 0.57)]
+            return [
+                *result,
+                Knob(("half_width",), 0.11, 0.76),
+                Knob(("above",), 0.11, 1.14),
+                Knob(("below",), 0.08, 0.57),
+            ]
         start, finish = row.fall_start, row.fall_finish
         reach = (
             Knob(("fall_near",), 0.0, 0.8 * start),
@@ -148,7 +159,10 @@ class TissueFitter:
         rows: dict[str, MuscleRow] = dict(self.file.muscles)
         for name in TISSUE_MUSCLES:
             others = sum(
-                (part * rows[other].strength * self.force(other, rows[other]) for other, part in _TOGETHER.get(name, {}).items()),
+                (
+                    part * rows[other].strength * self.force(other, rows[other])
+                    for other, part in _TOGETHER.get(name, {}).items()
+                ),
                 np.zeros((3, self.count, 3)),
             )
             rows[name], error = _MuscleFit(self, name, rows[name], units[rows[name].action_unit], others).run()
