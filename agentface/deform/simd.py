@@ -88,8 +88,7 @@ def gather(typing: Any, array: Any, indices: Any, at: Any, offset: Any) -> Any:
         data = context.make_array(of_array)(context, builder, args[0]).data
         places = context.make_array(of_indices)(context, builder, args[1]).data
         start, more = (
-            context.cast(builder, value, kind, types.intp)
-            for value, kind in ((args[2], of_at), (args[3], of_offset))
+            context.cast(builder, value, kind, types.intp) for value, kind in ((args[2], of_at), (args[3], of_offset))
         )
         start, data = builder.gep(places, [start]), builder.gep(data, [more])
         vector = ir.Constant(_VECTOR, ir.Undefined)

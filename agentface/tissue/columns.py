@@ -39,8 +39,7 @@ class Columns(NamedTuple):
         gap: ``(B, LANES)`` mm to the bone.
         firmness: ``(B, 3, LANES)`` what the prisms add to the stiffness of a column's nodes, at rest.
         rest: positions at rest.
-        law: ``(7,)``: Eq. 1's 1 / unit^2 and two coefficients of its power; rho / reference area; contact; form;
-            bending.
+        law: ``(7,)``: Eq. 1's 1 / unit^2 and two coefficients of its power; rho over area; contact; form; bending.
         steady: ``(B, 9, LANES)`` the constant part of what holds the springs' directions.
         colours: ``(K + 1,)`` int32, where the batches of each colour begin.
     """
@@ -70,7 +69,7 @@ def pack(lattice: Lattice, groups: list[Indices]) -> Columns:
     moving, colours = _batches(groups, rings)
     stays = np.ones(len(lattice.free), np.bool_)
     stays[moving[moving >= 0]] = False
-    staying = np.flatnonzero(stays)
+    staying = np.flatnonzero(stays).astype(np.int32)
     vertex = np.concatenate([moving, _padded(staying).reshape(-1, LANES)]).astype(np.int32)
     place = np.empty(len(lattice.free), np.int32)
     batch, lane = np.nonzero(vertex >= 0)
@@ -109,7 +108,7 @@ def pack(lattice: Lattice, groups: list[Indices]) -> Columns:
 
 
 def packed(vertex: Indices, points: Doubles, padding: float = 0.0) -> Floats:
-    """Points ``(3, V, 3)`` as positions ``(batches, 9, LANES)``; empty lanes get three points ``padding`` apart in z."""
+    """Points ``(3, V, 3)`` as positions ``(batches, 9, LANES)``; empty lanes get points ``padding`` apart in z."""
     rows = np.moveaxis(points[:, np.maximum(vertex, 0)], 0, 2).reshape(*vertex.shape, NODES)
     rows = np.where((vertex >= 0)[..., None], rows, padding * np.array([0, 0, 0, 0, 0, 1, 0, 0, 2]))
     return np.ascontiguousarray(rows.transpose(0, 2, 1), np.float32)
@@ -148,13 +147,13 @@ def _ring(following: dict[int, int]) -> list[int]:
     return ring
 
 
-def coloured(lattice: Lattice, mirror: Indices, chosen: Indices | None = None) -> list[Indices]:
-    """Columns that move, or those ``chosen``, in groups in which none is beside another; images share a colour.
+def coloured(lattice: Lattice, mirror: Indices, some: Indices | None = None) -> list[Indices]:
+    """Columns that move, or ``some`` of them, in groups in which none is beside another; images share a colour.
 
     ``mirror (V,)`` is each vertex's image. Groups go from the forehead down, so that batches lie close together.
     """
     rings = rings_of(lattice)
-    chosen = np.flatnonzero(lattice.free) if chosen is None else chosen
+    chosen = (np.flatnonzero(lattice.free) if some is None else some).astype(np.int32)
     colour, wanted = np.full(len(lattice.free), -1), set(chosen.tolist())
     order = chosen[np.argsort(-lattice.rest[0, chosen, 1], kind="stable")]
     for vertex in order.tolist():
@@ -231,5 +230,13 @@ def _law(lattice: Lattice) -> Floats:
     one, two = {0: (0.0, 0.0), 1: (1.0, 0.0), 2: (2.0, 1.0)}[table.springs.alpha]
     forms = ("energy", "printed", "signed", "epidermis")
     rho = table.volume.rho / (REFERENCE_MM2 if table.volume.form in ("energy", "epidermis") else 1.0)
-    values = (table.springs.unit**-2, one, two, rho, table.skull.contact, forms.index(table.volume.form), table.springs.bending)
+    values = (
+        table.springs.unit**-2,
+        one,
+        two,
+        rho,
+        table.skull.contact,
+        forms.index(table.volume.form),
+        table.springs.bending,
+    )
     return np.array(values, np.float32)

@@ -6,6 +6,8 @@ converge faster (over-relaxation). Columns of a batch are not beside each other 
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from agentface.conventions import Floats, Indices
@@ -25,7 +27,7 @@ _SINGULAR = np.float32(1e-6)
 
 
 @kernel(error_model="numpy", inline="always", fastmath=True)
-def bent(state, node, other, pull, inverse, law):  # type: ignore[no-untyped-def]
+def bent(state: Any, node: Any, other: Any, pull: Any, inverse: Any, law: Any) -> Any:
     """A node's force (3) and block of stiffness (6: xx yx yy zx zy zz) with one spring more."""
     x, y, z = node[0] - other[0], node[1] - other[1], node[2] - other[2]
     side, slope, over = tension(x * x + y * y + z * z, pull, inverse, law)
@@ -46,14 +48,14 @@ def bent(state, node, other, pull, inverse, law):  # type: ignore[no-untyped-def
 
 
 @kernel(error_model="numpy", inline="always", fastmath=True)
-def joined(node, other, pull, inverse, law):  # type: ignore[no-untyped-def]
+def joined(node: Any, other: Any, pull: Any, inverse: Any, law: Any) -> Any:
     """What a spring within a column adds to its two nodes: the force on the first, and the block of stiffness."""
     zero = splat(ZERO)
     return bent((zero, zero, zero, zero, zero, zero, zero, zero, zero), node, other, pull, inverse, law)
 
 
 @kernel(error_model="numpy", inline="always", fastmath=True)
-def plus(state, more, sign):  # type: ignore[no-untyped-def]
+def plus(state: Any, more: Any, sign: Any) -> Any:
     """``state`` with the force of ``more``, times ``sign``, and its stiffness."""
     return (
         state[0] + sign * more[0],
@@ -69,7 +71,7 @@ def plus(state, more, sign):  # type: ignore[no-untyped-def]
 
 
 @kernel(error_model="numpy", inline="always", fastmath=True)
-def pushed(state, x, y, z, push, slope):  # type: ignore[no-untyped-def]
+def pushed(state: Any, x: Any, y: Any, z: Any, push: Any, slope: Any) -> Any:
     """``state`` with a prism's force along its gradient and the stiffness of its pressure."""
     sx, sy = slope * x, slope * y
     return (
@@ -117,7 +119,7 @@ def step(matrix: Floats, force: Floats) -> None:
 
 
 @kernel(error_model="numpy", inline="always", fastmath=True)
-def put_block(matrix, node, state):  # type: ignore[no-untyped-def]
+def put_block(matrix: Any, node: Any, state: Any) -> Any:
     """Writes a node's own block into the lower triangle."""
     row = 3 * node
     store(matrix, (row * (row + 1) // 2 + row) * LANES, state[3])
@@ -133,7 +135,7 @@ def put_block(matrix, node, state):  # type: ignore[no-untyped-def]
 
 
 @kernel(error_model="numpy", inline="always", fastmath=True)
-def put_between(matrix, node, other, state):  # type: ignore[no-untyped-def]
+def put_between(matrix: Any, node: Any, other: Any, state: Any) -> Any:
     """Writes the block between two nodes of a column that one spring joins: its stiffness, with its sign turned."""
     zero = splat(ZERO)
     row = 3 * node

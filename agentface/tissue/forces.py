@@ -5,7 +5,7 @@ Signs: a force here is what moves a node. The paper subtracts an F_ela that pull
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -15,6 +15,8 @@ from agentface.tissue.elements import Elements
 from agentface.tissue.lattice import REFERENCE_MM2, Lattice
 from agentface.tissue.layers import HYPODERMIS
 
+_Blocks = tuple[Any, Any, Doubles]
+"""Rows, columns and ``(N, 3, 3)`` blocks of a matrix."""
 CRUSHED = 0.2
 """Of a volume at rest: below it the pressure's law goes on straight, so that it stays finite."""
 
@@ -49,7 +51,7 @@ def _ways(lattice: Lattice, points: Doubles) -> Doubles:
 
 
 def pressure(volume: Doubles) -> tuple[Doubles, Doubles]:
-    """What a relative volume is pressed with, and its slope: v - 1 above 1, (v - 1/v) / 2 below, straight if crushed."""
+    """What a relative volume is pressed with, and its slope: v - 1 above 1, (v - 1/v) / 2 below; straight if crushed."""
     safe = np.maximum(volume, CRUSHED)
     low, low_slope = 0.5 * (safe - 1.0 / safe), 0.5 * (1.0 + 1.0 / safe**2)
     low = low + low_slope * (volume - safe)
@@ -89,7 +91,9 @@ def held(lattice: Lattice, points: Doubles) -> Held:
     return Held(forces, along, across + contact * (deep > 0.0), float(energy[lattice.free].sum()))
 
 
-def volume_forces(lattice: Lattice, points: Doubles, elements: Elements | None = None, rest: Doubles | None = None) -> Doubles:
+def volume_forces(
+    lattice: Lattice, points: Doubles, elements: Elements | None = None, rest: Doubles | None = None
+) -> Doubles:
     """``(3 V, 3)``: the incompressibility force, in the form and strength of ``tissue.yaml``.
 
     ``elements``, of the volumes ``rest`` at rest, take the place of the lattice's prisms.
@@ -134,7 +138,9 @@ def energy(lattice: Lattice, points: Doubles, load: Doubles) -> float:
     stretch = np.linalg.norm(ways, axis=1) - springs.length
     turned = 0.5 * _bending(lattice) * ((ways - _ways(lattice, lattice.points)) ** 2).sum(axis=1)
     unit = (table.unit * springs.length) ** 2
-    share = springs.stiffness * unit / (2.0 * (table.alpha + 1)) * ((1.0 + stretch**2 / unit) ** (table.alpha + 1) - 1.0)
+    share = (
+        springs.stiffness * unit / (2.0 * (table.alpha + 1)) * ((1.0 + stretch**2 / unit) ** (table.alpha + 1) - 1.0)
+    )
     solid = lattice.file.volume.rho / REFERENCE_MM2 * lattice.volumes
     squeezed = solid * pressure_energy(lattice.prisms.volumes(points) / lattice.volumes)
     work = (load * (points - lattice.points))[np.tile(lattice.free, 3)]
@@ -142,7 +148,7 @@ def energy(lattice: Lattice, points: Doubles, load: Doubles) -> float:
 
 
 def stiffness(lattice: Lattice, points: Doubles) -> SparseMatrix:
-    """``(3 F, 3 F)`` sparse: the slope of :func:`forces`, with its sign turned, by the F nodes that move, for ``energy``.
+    """``(3 F, 3 F)`` sparse: the slope of :func:`forces`, its sign turned, by the F nodes that move; for ``energy``.
 
     Nodes stand in their order, three rows each. What a compressed spring and a pressed prism would take away is left
     out, so that it is positive.
@@ -162,7 +168,7 @@ def stiffness(lattice: Lattice, points: Doubles) -> SparseMatrix:
     return sparse.csc_matrix((blocks.ravel(), (i.ravel(), j.ravel())), shape=(3 * len(free),) * 2)
 
 
-def _spring_blocks(lattice: Lattice, points: Doubles) -> tuple[Doubles, Doubles, Doubles]:
+def _spring_blocks(lattice: Lattice, points: Doubles) -> _Blocks:
     a, b = lattice.springs.ends.T
     way = _ways(lattice, points)
     length = np.linalg.norm(way, axis=1)
@@ -174,14 +180,14 @@ def _spring_blocks(lattice: Lattice, points: Doubles) -> tuple[Doubles, Doubles,
     return np.concatenate([a, b, a, b]), np.concatenate([a, b, b, a]), np.concatenate([block, block, -block, -block])
 
 
-def _held_blocks(lattice: Lattice, points: Doubles) -> tuple[Doubles, Doubles, Doubles]:
+def _held_blocks(lattice: Lattice, points: Doubles) -> _Blocks:
     hold, normals = held(lattice, points), lattice.normals
     nodes = HYPODERMIS * len(normals) + np.arange(len(normals))
     turned = (hold.across - hold.along)[:, None, None] * normals[:, :, None] * normals[:, None]
     return nodes, nodes, hold.along[:, None, None] * np.eye(3) + turned
 
 
-def _volume_blocks(lattice: Lattice, points: Doubles) -> tuple[Doubles, Doubles, Doubles]:
+def _volume_blocks(lattice: Lattice, points: Doubles) -> _Blocks:
     prisms, volumes = lattice.prisms, lattice.volumes
     slopes, corners = prisms.gradients(points), prisms.corners
     size = lattice.file.volume.rho * pressure(prisms.volumes(points) / volumes)[1] / (REFERENCE_MM2 * volumes)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from agentface.conventions import Floats
@@ -17,7 +19,7 @@ _TINY = np.float32(1e-20)
 
 
 @kernel(error_model="numpy", inline="always", fastmath=True)
-def drawn(state, node, ahead, other, pull, inverse, law, whole):  # type: ignore[no-untyped-def]
+def drawn(state: Any, node: Any, ahead: Any, other: Any, pull: Any, inverse: Any, law: Any, whole: Any) -> Any:
     """A node's force and stiffness with one spring more (Eq. 12): P by where it will be, the pull by where it is.
 
     The stiffness is the sum of P of stretched springs, or, if ``whole``, of all slopes of tensions.
@@ -33,7 +35,7 @@ def drawn(state, node, ahead, other, pull, inverse, law, whole):  # type: ignore
 
 
 @kernel(error_model="numpy", inline="always", fastmath=True)
-def held(columns, batch, at, node):  # type: ignore[no-untyped-def]
+def held(columns: Any, batch: Any, at: Any, node: Any) -> Any:
     """The bone's force on hypodermis nodes, and its stiffness along and across the skin."""
     rest = (batch * NODES + 6) * LANES
     x, y, z = node[0] - load(at, rest), node[1] - load(at, rest + LANES), node[2] - load(at, rest + 2 * LANES)
@@ -52,14 +54,14 @@ def held(columns, batch, at, node):  # type: ignore[no-untyped-def]
 
 
 @kernel(error_model="numpy", inline="always", fastmath=True)
-def squeezed(columns, own, one, other, row, form):  # type: ignore[no-untyped-def]
+def squeezed(columns: Any, own: Any, one: Any, other: Any, row: Any, form: Any) -> Any:
     """(6,): what the prism between two neighbours does to the upper and to the lower node."""
     volume, slopes = prism(own, one, other)
     inverse = load(columns.volume, row * LANES)
     zero = splat(ZERO)
     rho = choose(zero - inverse, zero, splat(columns.law[3]))
     relative = volume * inverse
-    if form == _PRINTED or form == _SIGNED:
+    if form == _PRINTED or form == _SIGNED:  # noqa: SIM109  # numba would make a tuple
         change = relative - ONE
         size = change * change * rho
         if form == _SIGNED:
@@ -79,7 +81,9 @@ def squeezed(columns, own, one, other, row, form):  # type: ignore[no-untyped-de
 
 
 @kernel(error_model="numpy", inline="always", fastmath=True)
-def column_forces(columns, batch, own, ahead, positions, loads, form, whole):  # type: ignore[no-untyped-def]
+def column_forces(
+    columns: Any, batch: Any, own: Any, ahead: Any, positions: Any, loads: Any, form: Any, whole: Any
+) -> Any:
     """Three states (force, stiffness) of a batch whose nodes are at ``own`` and will be at ``ahead``."""
     law = columns.law
     load_at = batch * _COMPONENTS * LANES
@@ -122,7 +126,9 @@ def column_forces(columns, batch, own, ahead, positions, loads, form, whole):  #
     upper, upper_inverse = load(columns.own_pull, at), load(columns.own_inverse, at)
     lower, lower_inverse = load(columns.own_pull, at + LANES), load(columns.own_inverse, at + LANES)
     epidermis = drawn(epidermis, e, ea, da, upper, upper_inverse, law, whole)
-    dermis = drawn(drawn(dermis, d, da, ea, upper, upper_inverse, law, whole), d, da, ha, lower, lower_inverse, law, whole)
+    dermis = drawn(
+        drawn(dermis, d, da, ea, upper, upper_inverse, law, whole), d, da, ha, lower, lower_inverse, law, whole
+    )
     hypodermis = drawn(hypodermis, h, ha, da, lower, lower_inverse, law, whole)
     return epidermis, dermis, hypodermis
 

@@ -23,6 +23,8 @@ REFERENCE_MM2 = 8.0
 """The area of skin that stiffness across it and force are given for: most of a face's mesh has about that a vertex."""
 _AREAS = (0.15, 3.0)
 """Of the reference: what a vertex may count for, at least and at most."""
+_AT_A_HOLE = 0.3, 0.7
+"""How far muscles may pull on the first two rings of columns round a hole: a thin edge would flap."""
 _LEAST_VOLUME = 0.25
 """Of area times thickness: a prism that leans more has no volume to keep."""
 
@@ -51,6 +53,7 @@ class Lattice:
         triangles, edges: of the skin.
         normals: ``(V, 3)`` of the skin.
         free: ``(V,)`` the columns that move.
+        pulled: ``(V,)`` 0..1, how far muscles may pull on each: less beside what is not in the lattice.
         members: the others.
         carried: the skin that follows them.
         springs: all of them; those between nodes that stay, or that are not in the lattice, are left out.
@@ -71,6 +74,7 @@ class Lattice:
     edges: Indices
     normals: Doubles
     free: Mask
+    pulled: Doubles
     members: Members
     carried: Carried
     springs: Springs
@@ -98,7 +102,7 @@ def build_lattice(model: HeadModel, file: TissueFile | None = None) -> Lattice:
     edges, count = edges_of(triangles), len(points)
     beside, matrix = adjacency(edges, count), laplacian(edges, count)
     normals = model.normals.astype(np.float64)
-    ways, where = inward(normals, beside), members(model, file.lattice.carried_mm)
+    ways, where = inward(normals, beside), members(model, edges, file.lattice.carried_mm)
     depth = depths(model, matrix, file.depth_mm)
     thick = thickness(model, file.lattice, depth, ways, beside, where)
     rest = np.stack([points + (part * thick)[:, None] * ways for part in (0.0, file.lattice.dermis, 1.0)])
@@ -115,6 +119,7 @@ def build_lattice(model: HeadModel, file: TissueFile | None = None) -> Lattice:
         edges=edges,
         normals=normals,
         free=~(where.fixed | where.absent),
+        pulled=_pulled(where, beside),
         members=where,
         carried=carried_by(model, edges, where),
         springs=springs,
@@ -148,7 +153,8 @@ def _springs(
         strict=True,
     ):
         above, below = upper * count, (upper + 1) * count
-        ends += [np.stack([every + above, every + below], axis=1), edges + [above, below], edges + [below, above]]
+        ends += [np.stack([every + above, every + below], axis=1), edges + np.array([above, below])]
+        ends.append(edges + np.array([below, above]))
         stiffness += [connecting * per_vertex, crossed * per_edge, crossed * per_edge]
     both, all_stiffness = np.concatenate(ends).astype(np.int32), np.concatenate(stiffness)
     stays, absent = np.tile(where.fixed, 3)[both], np.tile(where.absent, 3)[both]
@@ -180,8 +186,14 @@ def _prisms(
     return Prisms(corners[kept].astype(np.int32)), volumes[kept], np.flatnonzero(due & ~sound).astype(np.int32)
 
 
+def _pulled(where: Members, beside: SparseMatrix) -> Doubles:
+    free = ~(where.fixed | where.absent)
+    near, next_to_it = (grown(where.absent, beside, rings) for rings in (1, 2))
+    return np.asarray(free * np.where(near, _AT_A_HOLE[0], np.where(next_to_it, _AT_A_HOLE[1], 1.0)))
+
+
 def _tether(model: HeadModel, file: TissueFile, depth: Doubles, area: Doubles, beside: SparseMatrix) -> Doubles:
-    """Weaker along the skin under the cheek's fat and the lips; stronger at the rim of the orbit and where it is held."""
+    """Weaker along the skin under the cheek's fat and the lips; stronger at the orbit's rim and where it is held."""
     table, per_vertex = file.skull, np.clip(area, 0.1, 4.0)
     soft = np.clip(6.0 / depth, 0.3, 1.2)
     lids = model.regions.mask(["lower_eyelid", "upper_eyelid"]) | (model.material[:, 2] > 0.5)

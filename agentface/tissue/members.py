@@ -10,12 +10,13 @@ import numpy.typing as npt
 from agentface.conventions import SIDES, Doubles, Indices
 from agentface.head.model import HeadModel
 from agentface.head.regions import REGIONS, REST
-from agentface.mesh.graph import SparseMatrix, harmonic_weights, laplacian, rim_of
+from agentface.mesh.graph import SparseMatrix, adjacency, harmonic_weights, laplacian, rim_of
 
 Mask = npt.NDArray[np.bool_]
 _INSIDE, _WET, _EAR = 0.02, 0.5, 0.05
 _SEAM_RINGS = 4
 """Rings of the lips, from the seam, that the lips' own surface has."""
+_ROUNDS = 2
 _IN_THE_MOUTH = 0.03
 """What an edge there counts beside one of the skin."""
 _LEAST_WEIGHT = 1e-4
@@ -40,7 +41,7 @@ class Members(NamedTuple):
         return self.carried | self.still
 
 
-def members(model: HeadModel, carried_mm: dict[str, float]) -> Members:
+def members(model: HeadModel, edges: Indices, carried_mm: dict[str, float]) -> Members:
     """What moves how: the lids, the inside of the mouth, the lips' seam and sharp corners are no tissue.
 
     As nodes of the lattice they fold, and folds are where one load has several equilibria. ``carried_mm`` gives the
@@ -58,6 +59,10 @@ def members(model: HeadModel, carried_mm: dict[str, float]) -> Members:
         for side in SIDES:
             away = np.linalg.norm(model.vertices - model.landmarks[f"{name}_{side}"], axis=1)
             carried |= 1e3 * away < radius
+    beside = adjacency(edges, len(carried))
+    around = np.maximum(np.asarray(beside.sum(1)).ravel(), 1.0)
+    for _ in range(_ROUNDS):  # a column that juts into a hole flaps
+        carried |= ~fixed & (beside @ (carried | still) > 0.5 * around)
     carried |= carried[model.mirror]
     fixed[rim_of(model.triangles)] = True
     still &= ~fixed

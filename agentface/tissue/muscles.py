@@ -54,12 +54,14 @@ def unit_field(model: HeadModel, lattice: Lattice, row: MuscleRow, side: str) ->
     """``(V, 3)``: the force of a muscle of strength 1 on one side."""
     unit = 1e3 * model.landmarks.eye_separation
     points = lattice.rest[HYPODERMIS]
-    reach = model.borders.reach(row, model.landmarks.eye_separation) * lattice.area * lattice.free
+    reach = model.borders.reach(row, model.landmarks.eye_separation) * lattice.area * lattice.pulled
     if isinstance(row, SphincterRow):
         centre = 1e3 * anchor_point(row.centre, side, model.landmarks)
         return reach[:, None] * _sphincter(row, points, centre, unit, lattice.normals)
-    ends = [1e3 * anchor_point(anchor, side, model.landmarks) for anchor in (row.origin, row.insertion)]
-    pull = _sheet(row, points, *ends, unit) if isinstance(row, SheetRow) else _linear(row, points, *ends, unit)
+    origin, insertion = (1e3 * anchor_point(anchor, side, model.landmarks) for anchor in (row.origin, row.insertion))
+    if isinstance(row, SheetRow):
+        return reach[:, None] * _sheet(row, points, origin, insertion, unit)
+    pull = _linear(row, points, origin, insertion, unit)
     return reach[:, None] * pull
 
 

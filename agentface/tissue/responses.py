@@ -1,4 +1,4 @@
-"""What each muscle alone does to the tissue, kept as a polynomial of its contraction: where equilibria are looked for."""
+"""What each muscle alone does to the tissue, as a polynomial of its contraction: where equilibria are looked for."""
 
 from __future__ import annotations
 
@@ -31,7 +31,8 @@ def measure(columns: Columns, loads: Floats) -> Responses:
     inverse = np.linalg.inv(np.array(LEVELS)[:, None] ** _POWERS)
     rows = []
     for load in loads:
-        positions, moved, before = columns.rest.copy(), [], 0.0
+        positions, before = columns.rest.copy(), 0.0
+        moved: list[Floats] = []
         for level in LEVELS:
             if before:
                 positions[:moving] += (level / before - 1.0) * moved[-1].reshape(positions[:moving].shape)

@@ -5,6 +5,8 @@ Three vectors are a point; a column is nine. The laws are those of :mod:`agentfa
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from agentface.deform.lanes import LANES
@@ -23,7 +25,7 @@ _SHARE = _F(1.0 / 36.0)
 
 
 @kernel(error_model="numpy", inline="always", fastmath=True)
-def column(positions, batch):  # type: ignore[no-untyped-def]
+def column(positions: Any, batch: Any) -> Any:
     """The nine coordinates of a batch."""
     at = batch * NODES * LANES
     return (
@@ -40,7 +42,7 @@ def column(positions, batch):  # type: ignore[no-untyped-def]
 
 
 @kernel(error_model="numpy", inline="always", fastmath=True)
-def neighbours(positions, places, row):  # type: ignore[no-untyped-def]
+def neighbours(positions: Any, places: Any, row: Any) -> Any:
     """The nine coordinates of a batch's neighbours in row ``row`` of the rings."""
     at = row * LANES
     return (
@@ -57,7 +59,7 @@ def neighbours(positions, places, row):  # type: ignore[no-untyped-def]
 
 
 @kernel(error_model="numpy", inline="always", fastmath=True)
-def tension(square, pull, inverse, law):  # type: ignore[no-untyped-def]
+def tension(square: Any, pull: Any, inverse: Any, law: Any) -> Any:
     """Of a spring with the ``square`` of its length: tension over length, the slope of the tension, 1 / length.
 
     Both have what holds the spring's direction; its constant part is the column's ``steady``.
@@ -72,7 +74,7 @@ def tension(square, pull, inverse, law):  # type: ignore[no-untyped-def]
 
 
 @kernel(error_model="numpy", inline="always", fastmath=True)
-def pressed(volume):  # type: ignore[no-untyped-def]
+def pressed(volume: Any) -> Any:
     """The pressure at a relative volume, and its slope."""
     safe = larger(volume, splat(_CRUSHED))
     over = ONE / safe
@@ -84,8 +86,8 @@ def pressed(volume):  # type: ignore[no-untyped-def]
 
 
 @kernel(error_model="numpy", inline="always", fastmath=True)
-def prism(own, one, other):  # type: ignore[no-untyped-def]
-    """Of the prism between a column and two neighbours: its volume, and that's gradients by the upper and lower node."""
+def prism(own: Any, one: Any, other: Any) -> Any:
+    """Of the prism between a column and two neighbours: its volume, and how that changes with the column's nodes."""
     ax, ay, az = one[0] - own[0], one[1] - own[1], one[2] - own[2]
     bx, by, bz = other[0] - own[0], other[1] - own[1], other[2] - own[2]
     cx, cy, cz = one[6] - own[6], one[7] - own[7], one[8] - own[8]

@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from agentface.conventions import Doubles, Floats
+from agentface.conventions import Doubles, Floats, Indices
 from agentface.deform import tables as skin_tables
 from agentface.head.model import HeadModel
 from agentface.tissue import skin
@@ -27,7 +27,9 @@ class TissueTables(NamedTuple):
     Attributes:
         lattice: as it is built.
         columns: as kernels take it.
-        loads: ``(23, B, 3, LANES)`` the muscles' forces, fully contracted.
+        mirror: ``(V,)`` each vertex's image.
+        forces: ``(23, V, 3)`` the muscles' on the hypodermis, fully contracted.
+        loads: ``(23, B, 3, LANES)`` the same, as kernels take them.
         drive: what of a pose contracts them.
         epidermis: where the skin goes with it.
         responses: what each muscle does alone.
@@ -38,6 +40,8 @@ class TissueTables(NamedTuple):
 
     lattice: Lattice
     columns: Columns
+    mirror: Indices
+    forces: Doubles
     loads: Floats
     drive: Drive
     epidermis: EpidermisTables
@@ -64,6 +68,8 @@ def prepare(model: HeadModel, file: TissueFile | None = None) -> TissueTables:
     return TissueTables(
         lattice=lattice,
         columns=columns,
+        mirror=model.mirror,
+        forces=forces,
         loads=loads,
         drive=Drive.of(lattice.file),
         epidermis=skin.prepare(columns, lattice.carried, skin_tables.of(model).skin),

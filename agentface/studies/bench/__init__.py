@@ -19,6 +19,7 @@ BENCHES: dict[str, str] = {
     "crowd": "many faces in one call, on one thread and on two",
     "render": "a picture in both qualities and two sizes, stage by stage, beside clearing and reading one back",
     "start": "a picture from a command, and first faces, beside importing the libraries",
+    "tissue": "the second paper's results: semi-implicit, adaptive and our solver on five expressions",
     "texture": "a picture worn as skin: how finely it lies, how emotions strain it, what drawing it costs",
 }
 """The benchmarks and what they compare; each is a module of this package with ``run() -> dict``."""

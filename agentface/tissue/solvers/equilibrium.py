@@ -14,6 +14,7 @@ if TYPE_CHECKING:
 
 LONGER = 1.7
 """Of Newton's step a column: over-relaxation."""
+_PATIENCE, _LOST_MM = 60, 1e3
 _LAST = 4
 """Sweeps of plain steps that end a search: they take out what over-relaxation leaves swinging."""
 
@@ -34,13 +35,17 @@ def relax(
     """
     from agentface.tissue.descent_compiled import sweep
 
-    count = len(columns.first) - 1
+    count, longer = len(columns.first) - 1, LONGER
     batches, moved = np.arange(count, dtype=np.int32), np.zeros(count, np.float32)
+    best = np.inf
     for done in range(1, most + 1):
-        sweep(columns, positions, loads, batches, count, LONGER, moved)
+        sweep(columns, positions, loads, batches, count, longer, moved)
         step = float(moved.max()) ** 0.5
-        if not step < 1e3 or step < tolerance:
+        if step < tolerance or not step < _LOST_MM:
             break
+        if done % _PATIENCE == 0:  # a node between two places swings for ever under long steps
+            longer = longer if step < 0.5 * best else 1.0 + 0.6 * (longer - 1.0)
+            best = min(best, step)
     for _ in range(_LAST):
         sweep(columns, positions, loads, batches, count, 1.0, moved)
     return done, float(moved.max()) ** 0.5
@@ -62,5 +67,11 @@ def gradually(columns: Columns, loads: Floats, steps: int = 5, positions: Floats
     """The equilibrium under ``loads``, raised from rest in ``steps``: all at once may fold the skin."""
     there = columns.rest.copy() if positions is None else positions
     for step in range(1, steps + 1):
-        relax(columns, there, loads * np.float32(step / steps), 1e-2 if step < steps else 2e-5, 200 if step < steps else 4000)
+        relax(
+            columns,
+            there,
+            loads * np.float32(step / steps),
+            1e-2 if step < steps else 2e-5,
+            200 if step < steps else 4000,
+        )
     return there
