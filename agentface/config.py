@@ -97,7 +97,8 @@ def _place(found: _Where, data: Any, *, missing: bool) -> _Where:
     """The keys and indices of ``found`` that lead into ``data``: pydantic puts the tags of models among them."""
     where: list[str | int] = []
     for part in found[:-1] if missing else found:
-        if (isinstance(data, dict) and part in data) or (isinstance(data, list) and isinstance(part, int)):
+        leads = part in data if isinstance(data, dict) else isinstance(data, list) and isinstance(part, int)
+        if leads:
             where.append(part)
             data = data[part]
     return (*where, found[-1]) if missing else tuple(where)

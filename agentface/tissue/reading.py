@@ -1,4 +1,4 @@
-"""Reads ``tissue.yaml``, and tells every fault in it at once: also unknown names, and numbers that do not fit together."""
+"""Reads ``tissue.yaml`` and tells all its faults at once: also unknown names, and numbers that do not fit together."""
 
 from __future__ import annotations
 

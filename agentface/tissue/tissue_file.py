@@ -25,9 +25,7 @@ TISSUE_MUSCLES = (
 """Without side: ten pairs of linear muscles and sheets, and the three sphincters."""
 UNPAIRED = "orbicularis_oris"
 NAMES: tuple[str, ...] = tuple(
-    full
-    for name in TISSUE_MUSCLES
-    for full in ([name] if name == UNPAIRED else [f"{name}_{side}" for side in SIDES])
+    full for name in TISSUE_MUSCLES for full in ([name] if name == UNPAIRED else [f"{name}_{side}" for side in SIDES])
 )
 """The 23 muscles with their sides, in the order of forces and contractions."""
 

@@ -37,7 +37,13 @@ _STEP = 2e-3
 _DIGITS = 4
 _TOGETHER = {"levator_alaeque_nasi": {"corrugator": 0.5}}
 """What else contracts in the action unit that a muscle is fitted to."""
-_PARTS = {"zygomaticus_major": 1.15, "risorius": 1.05, "mentalis": 1.3, "orbicularis_oculi": 0.9, "orbicularis_oris": 0.3}
+_PARTS = {
+    "zygomaticus_major": 1.15,
+    "risorius": 1.05,
+    "mentalis": 1.3,
+    "orbicularis_oculi": 0.9,
+    "orbicularis_oris": 0.3,
+}
 """Of the artists' shape: what muscle and tissue are to make of it; the lips' own model has the rest of pucker."""
 
 
