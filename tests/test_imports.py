@@ -22,6 +22,7 @@ LAYERS = (
     ("mesh",),
     ("head",),
     ("emotion", "deform"),
+    ("tissue",),
     ("motion",),
     ("requests",),
     ("view",),

@@ -14,14 +14,13 @@ import numpy as np
 
 from agentface.conventions import SIDES, Doubles
 from agentface.head.model import HeadModel
-from agentface.mesh.graph import SparseMatrix
 from agentface.studies.calibration.action_units import ActionUnit, load_action_units
 from agentface.tissue.columns import Columns, coloured, pack, unpacked
-from agentface.tissue.forces import stiffness
 from agentface.tissue.lattice import Lattice, build_lattice
 from agentface.tissue.layers import EPIDERMIS, HYPODERMIS
 from agentface.tissue.muscles import unit_field
 from agentface.tissue.solvers.equilibrium import gradually, new_loads
+from agentface.tissue.solvers.newton import factors, solve
 from agentface.tissue.tissue_file import TISSUE_MUSCLES, UNPAIRED, LinearRow, MuscleRow, SheetRow, TissueFile
 
 Progress = Callable[[str], None]
@@ -118,17 +117,11 @@ class TissueFitter:
     """Fits the muscles of one face, a model without asymmetry."""
 
     def __init__(self, model: HeadModel, file: TissueFile) -> None:
-        from scipy.sparse.linalg import splu
-
         self.model, self.file = model, file
         self.lattice: Lattice = build_lattice(model, file)
         self.columns: Columns = pack(self.lattice, coloured(self.lattice, model.mirror))
         self.count = len(self.lattice.free)
-        self.nodes = np.flatnonzero(np.tile(self.lattice.free, 3))
-        matrix: SparseMatrix = stiffness(self.lattice, self.lattice.points)
-        self.factors: Any = splu(
-            matrix, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True}
-        )
+        self.factors: Any = factors(self.lattice, self.lattice.points)
         edges = self.lattice.edges
         present = self.lattice.free[edges].any(axis=1) & ~self.lattice.members.absent[edges].any(axis=1)
         self.edges = edges[present]
@@ -137,9 +130,7 @@ class TissueFitter:
 
     def solve(self, forces: Doubles) -> Doubles:
         """``(3, V, 3)``: the linear response to ``forces (3, V, 3)``."""
-        result = np.zeros((3 * self.count, 3))
-        result[self.nodes] = self.factors.solve(forces.reshape(-1, 3)[self.nodes].ravel()).reshape(-1, 3)
-        return result.reshape(3, self.count, 3)
+        return solve(self.lattice, self.factors, forces.reshape(-1, 3)).reshape(forces.shape)
 
     def force(self, name: str, row: MuscleRow) -> Doubles:
         """``(3, V, 3)``: the force of a muscle, or of a pair, at strength 1."""
