@@ -11,8 +11,9 @@ from agentface.deform import order
 from agentface.deform import tables as skin_tables
 from agentface.deform.finish import order as last_part
 from agentface.deform.finish.order import FinishStage
-from agentface.deform.geometry import FaceGeometry
+from agentface.deform.geometry import FaceArrays, FaceGeometry
 from agentface.deform.order import Stage
+from agentface.deform.protocol import Frames
 from agentface.head.model import HeadModel
 from agentface.parameters import FacePose, check_pose
 from agentface.tissue import skin, tables
@@ -46,8 +47,8 @@ class TissueDeformer:
         compiled: bool = True,
         tissue: TissueTables | None = None,
     ) -> None:
-        self._model = model
-        self._tissue = tables.of(model) if tissue is None else tissue
+        self._model, self._compiled = model, compiled
+        self._tissue = tables.of(model, compiled=compiled) if tissue is None else tissue
         self._tables = skin_tables.of(model)
         self._points = self._tables.skin.rest.copy()
         self._deform, self._finish, self._put = order.deform, last_part.finish, skin.put
@@ -56,7 +57,7 @@ class TissueDeformer:
             from agentface.tissue import skin_compiled
 
             self._deform, self._finish, self._put = order_compiled.deform, order_compiled.finish, skin_compiled.put
-        self._solver = make_solver(solver, self._tissue)
+        self._solver = make_solver(solver, self._tissue, compiled=compiled)
         self._shown = self._new_geometry()
 
     def reset(self, pose: FacePose) -> None:
@@ -75,8 +76,21 @@ class TissueDeformer:
     def at(self, pose: FacePose) -> FaceGeometry:
         """The equilibrium in ``pose``, in arrays of its own; raises InvalidValueError for what is out of range."""
         geometry = self._new_geometry()
-        self._write(equilibrium(self._tissue, self._contractions(pose)), pose.array, geometry)
+        positions = equilibrium(self._tissue, self._contractions(pose), compiled=self._compiled)
+        self._write(positions, pose.array, geometry)
         return geometry
+
+    def worker(self) -> Frames:
+        """Writes rows of equilibria into rows of faces; each worker may be at work at the same time as the others."""
+        own = TissueDeformer(self._model, compiled=self._compiled)
+
+        def frames(first: int, last: int, poses: Floats, faces: FaceArrays) -> None:
+            for index in range(first, last):
+                found = own.at(FacePose(poses[index]))
+                for row, array in zip(faces, found.arrays(), strict=True):
+                    row[index] = array
+
+        return frames
 
     def _contractions(self, pose: FacePose) -> np.typing.NDArray[np.float64]:
         check_pose(pose.array)

@@ -51,7 +51,7 @@ def _ways(lattice: Lattice, points: Doubles) -> Doubles:
 
 
 def pressure(volume: Doubles) -> tuple[Doubles, Doubles]:
-    """What a relative volume is pressed with, and its slope: v - 1 above 1, (v - 1/v) / 2 below; straight if crushed."""
+    """What a relative volume v is pressed with: v - 1 above 1, (v - 1/v) / 2 below, straight if crushed; its slope."""
     safe = np.maximum(volume, CRUSHED)
     low, low_slope = 0.5 * (safe - 1.0 / safe), 0.5 * (1.0 + 1.0 / safe**2)
     low = low + low_slope * (volume - safe)

@@ -7,7 +7,9 @@ from typing import NamedTuple
 import numpy as np
 
 from agentface.conventions import Doubles, Floats
-from agentface.tissue.columns import Columns
+from agentface.tissue.columns import Columns, packed
+from agentface.tissue.lattice import Lattice
+from agentface.tissue.layers import HYPODERMIS
 from agentface.tissue.solvers.equilibrium import relax
 
 LEVELS = (0.5, 1.0)
@@ -23,6 +25,20 @@ class Responses(NamedTuple):
     def powers(self, contractions: Doubles) -> Floats:
         """``(46,)``: what each column counts for."""
         return (contractions[:, None] ** _POWERS).ravel().astype(np.float32)
+
+
+def linear(lattice: Lattice, columns: Columns, forces: Doubles) -> Responses:
+    """The responses to ``forces (23, V, 3)`` as far as the tissue at rest is linear, in numpy."""
+    from agentface.tissue.solvers.newton import factors, solve
+
+    factored, moving, rows = factors(lattice, lattice.points), len(columns.first) - 1, []
+    for pull in forces:
+        load = np.zeros_like(lattice.rest)
+        load[HYPODERMIS] = pull
+        moved = solve(lattice, factored, load.reshape(-1, 3)).reshape(lattice.rest.shape)
+        once = packed(columns.vertex, moved)[:moving].ravel()
+        rows += [once, *(0.0 * once for _ in LEVELS[1:])]
+    return Responses(np.array(rows, np.float32))
 
 
 def measure(columns: Columns, loads: Floats) -> Responses:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import NamedTuple
 
 import numpy as np
@@ -14,7 +15,7 @@ from agentface.tissue.columns import Columns, coloured, pack
 from agentface.tissue.lattice import Lattice, build_lattice
 from agentface.tissue.layers import HYPODERMIS
 from agentface.tissue.muscles import Drive, nodal_forces
-from agentface.tissue.responses import LEVELS, Responses, measure
+from agentface.tissue.responses import LEVELS, Responses, linear, measure
 from agentface.tissue.skin import EpidermisTables
 from agentface.tissue.solvers.equilibrium import new_loads
 from agentface.tissue.solvers.oscillators import Oscillators
@@ -51,19 +52,23 @@ class TissueTables(NamedTuple):
     drag: float
 
 
-def of(model: HeadModel) -> TissueTables:
-    """The tables of a face, prepared once; raises DataError where its ``tissue.yaml`` has faults or is missing."""
-    tables: TissueTables = model.derived("tissue.tables", prepare)
+def of(model: HeadModel, *, compiled: bool = True) -> TissueTables:
+    """The tables of a face, prepared once; raises DataError where its ``tissue.yaml`` has faults or is missing.
+
+    Without compiled kernels, the responses are linear ones.
+    """
+    name = "tissue.tables" if compiled else "tissue.tables.numpy"
+    tables: TissueTables = model.derived(name, partial(prepare, compiled=compiled))
     return tables
 
 
-def prepare(model: HeadModel, file: TissueFile | None = None) -> TissueTables:
+def prepare(model: HeadModel, file: TissueFile | None = None, *, compiled: bool = True) -> TissueTables:
     """The tables of a face, by its ``tissue.yaml`` or by ``file``; takes seconds."""
     lattice = build_lattice(model, file)
     columns = pack(lattice, coloured(lattice, model.mirror))
     forces = nodal_forces(model, lattice)
     loads = new_loads(columns, forces)
-    responses = measure(columns, loads)
+    responses = measure(columns, loads) if compiled else linear(lattice, columns, forces)
     swing, mass, drag = _dynamics(lattice.file.dynamics, columns, loads, responses)
     return TissueTables(
         lattice=lattice,

@@ -14,16 +14,15 @@ import numpy as np
 from agentface.conventions import SIDES, Doubles
 from agentface.errors import InvalidValueError, Place
 from agentface.head.model import HeadModel
-from agentface.mesh.graph import SparseMatrix
 from agentface.studies.calibration.action_units import ActionUnit, load_action_units
 from agentface.studies.calibration.tissue_knobs import knobs, turned, values_of
 from agentface.studies.calibration.tissue_loss import ShapeLoss
 from agentface.tissue.columns import Columns, coloured, pack, unpacked
-from agentface.tissue.forces import stiffness
 from agentface.tissue.lattice import Lattice, build_lattice
 from agentface.tissue.layers import EPIDERMIS, HYPODERMIS
 from agentface.tissue.muscles import unit_field
 from agentface.tissue.solvers.equilibrium import gradually, new_loads
+from agentface.tissue.solvers.newton import factors, solve
 from agentface.tissue.tissue_file import TISSUE_FILE, TISSUE_MUSCLES, UNPAIRED, MuscleRow, TissueFile
 
 Progress = Callable[[str], None]
@@ -56,23 +55,15 @@ class TissueFitter:
     """
 
     def __init__(self, model: HeadModel, file: TissueFile) -> None:
-        from scipy.sparse.linalg import splu
-
         self.model, self.file = model, file
         self.lattice: Lattice = build_lattice(model, file)
         self._columns: Columns = pack(self.lattice, coloured(self.lattice, model.mirror))
         self._count = len(self.lattice.free)
-        self._nodes = np.flatnonzero(np.tile(self.lattice.free, 3))
-        matrix: SparseMatrix = stiffness(self.lattice, self.lattice.points)
-        self._factors: Any = splu(
-            matrix, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True}
-        )
+        self._factors: Any = factors(self.lattice, self.lattice.points)
 
     def response(self, forces: Doubles) -> Doubles:
         """``(3, V, 3)`` mm: the linear response to ``forces (3, V, 3)``."""
-        result = np.zeros((3 * self._count, 3))
-        result[self._nodes] = self._factors.solve(forces.reshape(-1, 3)[self._nodes].ravel()).reshape(-1, 3)
-        return result.reshape(3, self._count, 3)
+        return solve(self.lattice, self._factors, forces.reshape(-1, 3)).reshape(forces.shape)
 
     def equilibrium(self, forces: Doubles) -> Doubles:
         """``(3, V, 3)`` mm: the movement under ``forces (3, V, 3)`` on the hypodermis."""

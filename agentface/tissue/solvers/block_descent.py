@@ -14,20 +14,16 @@ from agentface.tissue.tables import TissueTables
 
 SWEEPS = 3
 """Sweeps over the whole tissue a frame."""
-_RESTLESS_MM = 0.004
-"""A batch that moved as far, and what lies round it, moves again before the frame ends."""
-_MORE = 2.0
-"""Sweeps that may go into that, at most."""
 _STILL, _STILL_SPEED = 1e-3, 0.02
 """A contraction that is this near to what is asked of it, and this slow (1/s), is there."""
 _SETTLED_MM = 2e-4
 
 
 class BlockDescent:
-    """Equilibria that follow swinging muscles."""
+    """Equilibria that follow swinging muscles; those of numpy are exact and take seconds."""
 
-    def __init__(self, tables: TissueTables) -> None:
-        self._tables = tables
+    def __init__(self, tables: TissueTables, *, compiled: bool = True) -> None:
+        self._tables, self._compiled = tables, compiled
         self._moving = len(tables.columns.first) - 1
         self.positions: Floats = tables.columns.rest.copy()
         count = len(tables.loads)
@@ -38,7 +34,7 @@ class BlockDescent:
 
     def reset(self, contractions: Doubles) -> None:
         """Stand still in the equilibrium of ``contractions (23,)``."""
-        self.positions[:] = equilibrium(self._tables, contractions)
+        self.positions[:] = equilibrium(self._tables, contractions, compiled=self._compiled)
         self._asked, self._place = contractions.copy(), contractions.copy()
         self._speed = np.zeros_like(self._place)
         self._powers = self._tables.responses.powers(self._place)
@@ -59,14 +55,17 @@ class BlockDescent:
 
     def follow(self, contractions: Doubles) -> None:
         """Near to the equilibrium of ``contractions``, from where the tissue is."""
-        from agentface.tissue.descent_compiled import sweep
-
         tables = self._tables
         if not contractions.any():
             self.positions[:] = tables.columns.rest
             self._powers[:] = 0.0
             self._settled = True
             return
+        if not self._compiled:
+            self.positions[:] = equilibrium(tables, contractions, compiled=False)
+            return
+        from agentface.tissue.descent_compiled import sweep
+
         powers = tables.responses.powers(contractions)
         ahead = (powers - self._powers) @ tables.responses.columns
         self._powers = powers

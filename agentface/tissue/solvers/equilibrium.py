@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from agentface.conventions import Doubles, Floats
-from agentface.tissue.columns import Columns
+from agentface.tissue.columns import Columns, packed
+from agentface.tissue.solvers.newton import newton
 
 if TYPE_CHECKING:
     from agentface.tissue.tables import TissueTables
@@ -51,11 +52,14 @@ def relax(
     return done, float(moved.max()) ** 0.5
 
 
-def equilibrium(tables: TissueTables, contractions: Doubles) -> Floats:
+def equilibrium(tables: TissueTables, contractions: Doubles, *, compiled: bool = True) -> Floats:
     """Where the tissue is at rest with the muscles ``(23,)`` contracted, whatever came before; rest itself for none."""
     columns, positions = tables.columns, tables.columns.rest.copy()
     if not contractions.any():
         return positions
+    if not compiled:
+        pull = np.tensordot(contractions, tables.forces, 1)
+        return packed(columns.vertex, newton(tables.lattice, pull), padding=-1.0)
     moving, responses = len(columns.first) - 1, tables.responses
     guess = responses.powers(contractions) @ responses.columns
     positions[:moving] += guess.reshape(positions[:moving].shape)

@@ -37,10 +37,17 @@ def solver_names() -> tuple[str, ...]:
     return tuple(_SOLVERS)
 
 
-def make_solver(name: str, tables: TissueTables) -> Solver:
-    """The solver ``name`` for the tissue of a face; raises UnknownNameError."""
+def make_solver(name: str, tables: TissueTables, *, compiled: bool = True) -> Solver:
+    """The solver ``name`` for the tissue of a face; raises UnknownNameError.
+
+    The paper's two are compiled or not at all: without compiled kernels the default stands in for them.
+    """
     if name not in _SOLVERS:
         raise UnknownNameError("solver", name, solver_names())
+    if not compiled:
+        from agentface.tissue.solvers.block_descent import BlockDescent
+
+        return BlockDescent(tables, compiled=False)
     module, _, attribute = _SOLVERS[name].partition(":")
     factory: Callable[[TissueTables], Solver] = getattr(import_module(module), attribute)
     return factory(tables)
