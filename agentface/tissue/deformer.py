@@ -24,8 +24,8 @@ from agentface.tissue.solvers.solver import DEFAULT_SOLVER, make_solver
 class TissueDeformer:
     """The physical face of Zhang, Prakash and Sung: it has mass, and each pose has one equilibrium.
 
-    Tissue takes the place of the geometric face's vector muscles, volumes and limits; orbicularis oris, lids, jaw,
-    lips, contact, wrinkles and neck are the same. It is solved with the jaw closed; the jaw carries it along.
+    Tissue takes the place of the geometric face's vector muscles, of the volumes that they gather and of limits;
+    orbicularis oris, lids, jaw, lips, contact, wrinkles and neck are the same. It is solved with the jaw closed; the jaw carries it along.
 
     Args:
         model: the face; its folder must have a ``tissue.yaml``.
@@ -48,6 +48,7 @@ class TissueDeformer:
             from agentface.tissue import skin_compiled
 
             self._deform, self._finish, self._put = order_compiled.deform, order_compiled.finish, skin_compiled.put
+        self._driven = self._tissue.drive.weights.any(axis=0)
         self._solver = make_solver(solver, self._tissue, compiled=compiled)
         self._shown = self._new_geometry()
 
@@ -89,6 +90,8 @@ class TissueDeformer:
 
     def _write(self, positions: Floats, values: Floats, geometry: FaceGeometry) -> None:
         self._put(self._tissue.epidermis, positions, self._points)
+        others = np.where(self._driven, np.float32(0.0), values)  # tissue gathers by itself where its muscles pull
+        self._deform(int(Stage.VOLUMES), int(Stage.VOLUMES), self._tables.skin, others, self._points)
         self._deform(int(Stage.ORBICULARIS_ORIS), int(Stage.MIDPOINTS), self._tables.skin, values, self._points)
         geometry.vertices[:] = self._points[: len(geometry.vertices)]
         first, last = int(FinishStage.SMOOTH_NORMALS), int(FinishStage.NECK)
