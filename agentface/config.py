@@ -9,12 +9,15 @@ from __future__ import annotations
 
 import re
 from pathlib import Path
-from typing import Any, NoReturn, TypeVar
+from typing import TYPE_CHECKING, Any, NoReturn, TypeVar
 
 import yaml
 from pydantic import BaseModel, ConfigDict, ValidationError
 
 from agentface.errors import DataError, Fault
+
+if TYPE_CHECKING:
+    from pydantic_core import ErrorDetails
 
 _LARGEST_FILE = 4 * 1024 * 1024
 _Where = tuple[str | int, ...]
@@ -67,9 +70,7 @@ class Document:
             return model.model_validate(self.data)
         except ValidationError as error:
             for item in error.errors():
-                where = tuple(part for part in item["loc"] if part != "[key]")
-                got = "nothing" if item["type"] == "missing" else _shown(item["input"])
-                self.fault(where, _expectation(item["msg"], item["type"]), got)
+                self.fault(*_told(item, self.data))
             return None
 
 
@@ -78,9 +79,32 @@ def load(path: str | Path, model: type[Model]) -> Model:
     return Document(path).parse(model)
 
 
-def _expectation(message: str, kind: str) -> str:
+def _told(item: ErrorDetails, data: Any) -> tuple[_Where, str, str]:
+    """Where in ``data`` pydantic found an error, what it expected, and what it got."""
+    kind = item["type"]
+    where = _place(item["loc"], data, missing=kind == "missing")
+    if kind.startswith("union_tag"):  # of the key that says which of several tables it is
+        where, context = (*where, item["ctx"]["discriminator"].strip("'")), item["ctx"]
+        if kind == "union_tag_invalid":
+            return where, f"one of {context['expected_tags'].replace(chr(39), '')}", _shown(context["tag"])
+        kind = "missing"
     if kind == "missing":
-        return "this key"
+        return where, "this key", "nothing"
+    return where, _expectation(item["msg"], kind), _shown(item["input"])
+
+
+def _place(found: _Where, data: Any, *, missing: bool) -> _Where:
+    """The keys and indices of ``found`` that lead into ``data``: pydantic puts the tags of models among them."""
+    where: list[str | int] = []
+    for part in found[:-1] if missing else found:
+        leads = part in data if isinstance(data, dict) else isinstance(data, list) and isinstance(part, int)
+        if leads:
+            where.append(part)
+            data = data[part]
+    return (*where, found[-1]) if missing else tuple(where)
+
+
+def _expectation(message: str, kind: str) -> str:
     if kind == "extra_forbidden":
         return "no such key"
     for prefix in ("Input should be a valid dictionary or instance of", "Input should be a valid dictionary"):

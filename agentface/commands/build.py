@@ -14,7 +14,7 @@ from agentface.commands.options import face_options
 from agentface.commands.streams import console
 from agentface.errors import DataError, InvalidValueError
 
-_BORROWED = ("muscles.yaml", "asymmetry.yaml", "look.yaml")
+_BORROWED = ("muscles.yaml", "tissue.yaml", "asymmetry.yaml", "look.yaml")
 
 
 @click.command()
@@ -29,8 +29,9 @@ def build(*, recipe: Path, output: Path | None, source: Path | None, face: str, 
 
     Without -o it goes to your own faces (regions in AGENTFACE_DATA, or ~/.local/share/agentface/regions), where --face
     finds it by its name: that of the recipe's file or, if that is recipe.yaml, of its folder. The base mesh is
-    downloaded once, 48 MB. What the recipe does not say (muscles.yaml, asymmetry.yaml, look.yaml) is copied from
-    --face, unless the folder has it already; agentface calibrate then fits the muscles.
+    downloaded once, 48 MB. What the recipe does not say (muscles.yaml, tissue.yaml, asymmetry.yaml, look.yaml) is
+    copied from --face, unless the folder has it already; agentface calibrate then fits the muscles, and with
+    --deformer tissue those of the tissue.
     """
     from agentface.deform.protocol import check_deformer
     from agentface.head.build.source import fetch, source_folder
@@ -46,14 +47,22 @@ def build(*, recipe: Path, output: Path | None, source: Path | None, face: str, 
         data = fetch(source or source_folder())
         files = _files(folder.name, recipe, data, step)
         for name in _BORROWED:
-            own = folder / name
-            files[name] = (own if own.is_file() else lender / name).read_bytes()
+            files[name] = _borrowed(name, folder, lender).read_bytes()
         step("checking the face")
         _check(files, folder)
     make_folder(folder)
     for name, content in files.items():
         write_file(folder / name, content)
     click.echo(f"{folder}: written; agentface show --face {_named(folder)} shows it")
+
+
+def _borrowed(name: str, folder: Path, lender: Path) -> Path:
+    """Where a file of the new face comes from: its folder, the lender's, or, for the tissue, the anatomist's table."""
+    from agentface.tissue.reading import anatomy_file
+
+    anatomist = anatomy_file()
+    places = [folder / name, lender / name, *([anatomist] if name == anatomist.name else [])]
+    return next((place for place in places if place.is_file()), lender / name)
 
 
 def _own_folder(recipe: Path) -> Path:

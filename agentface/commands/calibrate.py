@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from agentface.commands.options import deformer_option, json_option, write_json
+from agentface.commands.options import deformer_option, given, json_option, write_json
 from agentface.commands.streams import console
 from agentface.errors import OutputError
 
@@ -23,7 +23,9 @@ if TYPE_CHECKING:
 
 @click.command()
 @click.argument("named", required=False, metavar="[FACE]")
-@click.option("--starts", type=click.IntRange(1, 1000), default=4, show_default=True, help="Searches of each group.")
+@click.option(
+    "--starts", type=click.IntRange(1, 1000), default=4, show_default=True, help="Searches of each group of muscles."
+)
 @click.option("--seed", type=click.IntRange(0), default=0, show_default=True, help="Of the searches' starts.")
 @click.option("--dry-run", is_flag=True, help="Fit and print, write nothing.")
 @click.option("--table", is_flag=True, help="Fit nothing: measure FACE, or all faces that come with agentface.")
@@ -31,7 +33,9 @@ if TYPE_CHECKING:
 @json_option
 @click.option("--face", metavar="NAME|PATH", help="The same as FACE.")
 @deformer_option
+@click.pass_context
 def calibrate(
+    ctx: click.Context,
     *,
     named: str | None,
     starts: int,
@@ -43,13 +47,16 @@ def calibrate(
     face: str | None,
     deformer: str,
 ) -> None:
-    """Fit the vector muscles of FACE, a name or a folder, to its artists' shapes, and write its muscles.yaml.
+    """Fit the muscles of FACE, a name or a folder, to its artists' shapes.
 
-    Takes minutes. Prints how well every action unit agrees, before and after.
+    Writes its muscles.yaml, or with --deformer tissue its tissue.yaml, of which all but the muscles stays. Takes
+    minutes. Prints how well every action unit agrees, before and after.
     """
-    from agentface.deform.protocol import check_deformer
+    from agentface.deform.protocol import TISSUE_DEFORMERS, check_deformer
 
     check_deformer(deformer)
+    if deformer in TISSUE_DEFORMERS and given(ctx) & {"starts", "seed"}:
+        raise click.UsageError("--starts and --seed are for vector muscles: the fit of the tissue has one start")
     if named and face:
         raise click.UsageError("expected one face, got FACE and --face")
     chosen = named or face
@@ -66,6 +73,7 @@ def calibrate(
 
 
 def _measure(faces: Sequence[str] | None, deformer: str, output: str | None, json_file: str | None) -> None:
+    from agentface.deform.protocol import make_deformer
     from agentface.head.model import load_model
     from agentface.resources import face_names
     from agentface.studies.calibration.action_units import load_action_units
@@ -75,19 +83,20 @@ def _measure(faces: Sequence[str] | None, deformer: str, output: str | None, jso
     models = [load_model(face, asymmetry=0.0) for face in faces or face_names()]
     if json_file is not None:
         units = load_action_units()
-        write_json(json_file, {model.name: _figures(measure(model, units, deformer)) for model in models})
+        rows = {model.name: measure(model, units, make_deformer(deformer, model)) for model in models}
+        write_json(json_file, {name: _figures(each, deformer) for name, each in rows.items()})
     if output not in (None, "-"):
-        _renew(Path(str(output)), table(models, deformer))
+        _renew(Path(str(output)), table(models, deformer), deformer)
     elif output == "-" or json_file is None:
         click.echo(table(models, deformer), nl=False)
 
 
-def _renew(path: Path, table: str) -> None:
+def _renew(path: Path, table: str, deformer: str) -> None:
     from agentface.io.files import write_file
     from agentface.studies.calibration.limits import with_table
 
     try:
-        text = with_table(path.read_text(encoding="utf-8"), table)
+        text = with_table(path.read_text(encoding="utf-8"), table, deformer)
     except (OSError, UnicodeDecodeError) as error:
         raise OutputError(f"{path}: expected a document to put the table into: {error}") from error
     except OutputError as error:
@@ -97,51 +106,39 @@ def _renew(path: Path, table: str) -> None:
 
 
 def _fit(face: str, deformer: str, starts: int, seed: int, dry_run: bool, json_file: str | None) -> None:
-    from agentface.head.model import load_model
-    from agentface.head.muscles import read_muscles
     from agentface.io.files import check_writable, write_file
-    from agentface.resources import face_folder
-    from agentface.studies.calibration import calibrate as fitting
     from agentface.studies.calibration.action_units import load_action_units
-    from agentface.studies.calibration.agreement import measure
-    from agentface.studies.calibration.limits import missed
+    from agentface.studies.calibration.fits import fit_of
+    from agentface.studies.calibration.limits import limits_of, missed
 
-    path = face_folder(face) / "muscles.yaml"
-    units = load_action_units()
-    model = load_model(face, None if path.exists() else read_muscles(fitting.anatomy_file()), asymmetry=0.0)
+    fit = fit_of(face, deformer, starts, seed)
     if not dry_run:
-        check_writable(path)
-    before = measure(model, units, deformer)
-    with _progress(starts) as progress:
-        fitted = fitting.calibrate(face, starts, seed, progress)
-    after = measure(load_model(face, muscles=fitted, asymmetry=0.0), units, deformer)
+        check_writable(fit.path)
+    with _progress(fit.work) as progress:
+        before = fit.before()
+        text, after = fit.run(progress)
     if json_file is not None:
-        write_json(json_file, {"before": _figures(before), "after": _figures(after)})
+        write_json(json_file, {"before": _figures(before, deformer), "after": _figures(after, deformer)})
     if json_file != "-":
-        _print({number: unit.name for number, unit in units.items()}, before, after)
-    for sentence in missed(after):
+        _print({number: unit.name for number, unit in load_action_units().items()}, before, after)
+    for sentence in missed(after, limits_of(deformer)):
         click.echo(f"agentface: {sentence}", err=True)
     if not dry_run:
-        write_file(path, fitting.muscles_yaml(fitted).encode())
-        click.echo(f"{path}: written", err=True)
+        write_file(fit.path, text.encode())
+        click.echo(f"{fit.path}: written", err=True)
 
 
 @contextmanager
-def _progress(starts: int) -> Iterator[Progress]:
-    """Shows each search as it ends, and the time left."""
+def _progress(work: Sequence[float]) -> Iterator[Progress]:
+    """Shows each step of a fit as it ends, ``work`` of which is how much, and the time left."""
     from rich.progress import BarColumn, TextColumn, TimeElapsedColumn, TimeRemainingColumn
     from rich.progress import Progress as Bar
 
-    from agentface.studies.calibration.action_units import load_action_units
-    from agentface.studies.calibration.fit import groups
-
-    # A search's time grows with its parameters, and with the muscles and action units of each evaluation.
-    work = [len(g.muscles) ** 2 * len(g.units) for g in groups(list(load_action_units().values()))]
-    steps = iter([each for each in work for _ in range(starts)])
+    steps = iter(work)
     columns = (TextColumn("{task.description}"), BarColumn(), TimeElapsedColumn(), TextColumn("left"))
     # No update comes for a minute at times: guess from all of them.
     with Bar(*columns, TimeRemainingColumn(), console=console(), speed_estimate_period=3600) as bar:
-        task = bar.add_task("fitting", total=starts * sum(work))
+        task = bar.add_task("fitting", total=sum(work))
         yield lambda message: bar.update(task, description=message, advance=next(steps, 0))
 
 
@@ -166,14 +163,14 @@ def _print(names: dict[int, str], before: Rows, after: Rows) -> None:
     click.echo(printed.get(), nl=False)
 
 
-def _figures(rows: Rows) -> dict[str, Any]:
+def _figures(rows: Rows, deformer: str) -> dict[str, Any]:
     from agentface.studies.calibration.calibrate import mean_cosine
-    from agentface.studies.calibration.limits import missed
+    from agentface.studies.calibration.limits import limits_of, missed
 
     units = {str(number): asdict(row) for number, row in rows.items()}
     return {
         "mean_cosine": mean_cosine(rows),
         "mean_cosine_of_others": mean_cosine(rows, fitted=False),
-        "missed": missed(rows),
+        "missed": missed(rows, limits_of(deformer)),
         "action_units": units,
     }

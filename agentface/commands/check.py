@@ -24,16 +24,18 @@ _Loader = Callable[[Path], object]
 def check(*, files: tuple[Path, ...], face: str | None, deformer: str) -> None:
     """Check rules, faces and EmotionML: files, folders, or, if none is named, all that come with agentface.
 
-    Prints every fault with file and line; the exit code is 1 if there is any.
+    Prints every fault with file and line; the exit code is 1 if there is any. A face need not have a tissue.yaml,
+    unless --deformer is one that moves tissue.
     """
-    from agentface.deform.protocol import check_deformer
+    from agentface.deform.protocol import TISSUE_DEFORMERS, check_deformer
     from agentface.resources import face_folder
 
     check_deformer(deformer)
+    tissue = deformer in TISSUE_DEFORMERS
     places = [*files, *([face_folder(face)] if face else [])] or _shipped()
     faults: list[Fault] = []
     for place in places:
-        found = list(dict.fromkeys(faults_of(place)))
+        found = list(dict.fromkeys(faults_of(place, tissue=tissue)))
         faults += found
         plural = "" if len(found) == 1 else "s"
         click.echo(f"{place}: {len(found)} fault{plural}" if found else f"{place}: good")
@@ -45,12 +47,15 @@ def check(*, files: tuple[Path, ...], face: str | None, deformer: str) -> None:
 
 def _shipped() -> list[Path]:
     from agentface.resources import data_folder, face_folder, face_names
+    from agentface.tissue.reading import anatomy_file
 
-    return [data_folder("rules"), *(face_folder(name) for name in face_names())]
+    return [data_folder("rules"), anatomy_file(), *(face_folder(name) for name in face_names())]
 
 
-def faults_of(place: str | Path) -> list[Fault]:
-    """Every fault of a file, of a folder of rules, or of a face's folder."""
+def faults_of(place: str | Path, *, tissue: bool = False) -> list[Fault]:
+    """Every fault of a file, of a folder of rules, or of a face's folder; ``tissue``: that it has none is one."""
+    from agentface.tissue.tissue_file import TISSUE_FILE
+
     place = Path(place)
     if not place.exists():
         return [Fault(place, None, "", "a file or a folder", "nothing")]
@@ -59,11 +64,12 @@ def faults_of(place: str | Path) -> list[Fault]:
     names = {path.name for path in place.iterdir()}
     if names & set(_rule_readers()):
         return [fault for name in _rule_readers() for fault in _faults_of_file(place / name)]
-    if not names & {"head.glb", *_face_readers()}:
+    if not names & (_face_readers().keys() - {TISSUE_FILE}):  # the anatomist's lies beside the faces' folders
         return [Fault(place, None, "", "a folder with rules or a face", "neither")]
+    tables = [place / name for name in _face_readers() if name in names or name != TISSUE_FILE]
     looks = sorted((place / "looks").glob("*.yaml"))
-    found = [fault for path in [*(place / name for name in _face_readers()), *looks] for fault in _faults_of_file(path)]
-    return found or _faults_in(lambda: _whole_face(place))
+    found = [fault for path in [*tables, *looks] for fault in _faults_of_file(path)]
+    return found or _faults_in(lambda: _whole_face(place, tissue))
 
 
 def _faults_of_file(path: Path) -> list[Fault]:
@@ -105,9 +111,11 @@ def _face_readers() -> dict[str, _Loader]:
     from agentface.head.look import read_look
     from agentface.head.model import TABLES
     from agentface.mesh.glb import read_glb
+    from agentface.tissue.reading import read_tissue
+    from agentface.tissue.tissue_file import TISSUE_FILE
 
     tables = {name: _beside_its_skin(read) for name, read in TABLES.items()}
-    return {"head.glb": read_glb, **tables, "look.yaml": read_look}
+    return {"head.glb": read_glb, **tables, "look.yaml": read_look, TISSUE_FILE: read_tissue}
 
 
 def _beside_its_skin(read: Callable[[Path, MeshArrays], object]) -> _Loader:
@@ -124,18 +132,29 @@ def _skin_beside(beside: Path) -> MeshArrays:
     return meshes["skin"]
 
 
-def _whole_face(folder: Path) -> None:
+def _whole_face(folder: Path, tissue: bool) -> None:
     """What only the files together show: whether muscles, wrinkles, lips, lids and the rest can be made of them."""
     from agentface.deform import tables
     from agentface.head.model import load_model
+    from agentface.tissue.soundness import check_tissue
+    from agentface.tissue.tissue_file import TISSUE_FILE
 
     model = load_model(folder)
+    makes: list[Callable[[], object]] = [
+        lambda: model.muscles,
+        lambda: model.trains,
+        lambda: tables.prepare(model),
+    ]
+    if tissue or (folder / TISSUE_FILE).exists():
+        makes.append(lambda: check_tissue(model))
     found: list[Fault] = []
-    for make in (lambda: model.muscles, lambda: model.trains, lambda: tables.prepare(model)):
+    for make in makes:
         try:
             make()
         except InvalidValueError as error:
             found.append(_located(folder, error))
+        except DataError as error:
+            found += error.faults
     if found:
         raise DataError(list(dict.fromkeys(found)))
 

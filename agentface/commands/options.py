@@ -104,7 +104,12 @@ json_option = click.option(
 
 
 deformer_option = click.option(
-    "--deformer", default="geometric", metavar="NAME", show_default=True, help="What makes a face of a pose."
+    "--deformer",
+    default="geometric",
+    metavar="NAME",
+    show_default=True,
+    help="What makes a face of a pose: geometric, or tissue: soft tissue over a skull, which has mass; "
+    "tissue-semi-implicit and tissue-adaptive are the same tissue with the paper's two solvers.",
 )
 
 

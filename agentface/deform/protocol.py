@@ -61,6 +61,8 @@ _DEFORMERS: dict[str, Factory] = {
     "tissue-semi-implicit": "agentface.tissue.deformer:SemiImplicitTissue",
     "tissue-adaptive": "agentface.tissue.deformer:AdaptiveTissue",
 }
+TISSUE_DEFORMERS = tuple(name for name, factory in _DEFORMERS.items() if str(factory).startswith("agentface.tissue."))
+"""Those that need a face's ``tissue.yaml``."""
 
 
 def register(name: str, factory: Factory) -> Callable[[], None]:

@@ -19,6 +19,7 @@ from agentface.parameters import FacePose, check_pose
 from agentface.tissue import skin, tables
 from agentface.tissue.solvers.equilibrium import equilibrium
 from agentface.tissue.solvers.solver import DEFAULT_SOLVER, make_solver
+from agentface.tissue.tables import TissueTables
 
 
 class TissueDeformer:
@@ -31,15 +32,23 @@ class TissueDeformer:
         model: the face; its folder must have a ``tissue.yaml``.
         solver: one of :func:`agentface.tissue.solvers.solver.solver_names`.
         compiled: False for numpy, the same to 0.01 mm, seconds a frame.
+        tissue: other tissue than the face's own, of :func:`agentface.tissue.tables.prepare`; then it needs no file.
 
     Raises:
         DataError: with the faults of ``tissue.yaml``, or that there is none.
         UnknownNameError: for a solver that is not there.
     """
 
-    def __init__(self, model: HeadModel, solver: str = DEFAULT_SOLVER, *, compiled: bool = True) -> None:
+    def __init__(
+        self,
+        model: HeadModel,
+        solver: str = DEFAULT_SOLVER,
+        *,
+        compiled: bool = True,
+        tissue: TissueTables | None = None,
+    ) -> None:
         self._model, self._compiled = model, compiled
-        self._tissue = tables.of(model, compiled=compiled)
+        self._tissue = tables.of(model, compiled=compiled) if tissue is None else tissue
         self._tables = skin_tables.of(model)
         self._points = self._tables.skin.rest.copy()
         self._deform, self._finish, self._put = order.deform, last_part.finish, skin.put

@@ -13,10 +13,11 @@ from agentface.head.model import HeadModel
 from agentface.mesh.graph import SparseMatrix, adjacency, edges_of, laplacian
 from agentface.tissue.depth import depths
 from agentface.tissue.elements import Prisms
-from agentface.tissue.layers import HYPODERMIS, grown, inward, thickness
+from agentface.tissue.layers import DERMIS, EPIDERMIS, HYPODERMIS, area_ratio, grown, inward, thickness
 from agentface.tissue.members import Carried, Mask, Members, carried_by, members
+from agentface.tissue.reading import tissue_of
 from agentface.tissue.skull import Skull, fit_skull
-from agentface.tissue.tissue_file import HoldTable, SpringsTable, TissueFile, tissue_of
+from agentface.tissue.tissue_file import HoldTable, SpringsTable, TissueFile
 
 REFERENCE_MM2 = 8.0
 """The area of skin that stiffness across it and force are given for: most of a face's mesh has about that a vertex."""
@@ -62,6 +63,7 @@ class Lattice:
         area: ``(V,)`` of a vertex, in ``REFERENCE_MM2``, within bounds; what forces and masses are scaled with.
         prisms: the elements, epidermis to hypodermis.
         volumes: ``(P,)`` mm3 of these at rest.
+        degenerate: triangles of moving skin that have no prism, because theirs would be inverted or lean over.
         depth, thickness: ``(V,)`` mm, of the soft tissue and of the lattice.
         skull: the bone under it.
     """
@@ -82,6 +84,7 @@ class Lattice:
     area: Doubles
     prisms: Prisms
     volumes: Doubles
+    degenerate: Indices
     depth: Doubles
     thickness: Doubles
     skull: Skull
@@ -108,7 +111,7 @@ def build_lattice(model: HeadModel, file: TissueFile | None = None) -> Lattice:
     area = np.bincount(triangles.ravel(), np.repeat(face_area / 3.0, 3), count) / REFERENCE_MM2
     edge_area = _edge_area(edges, triangles, face_area)
     springs, spring_count = _springs(rest, edges, area, edge_area, file.springs, where)
-    prisms, volumes = _prisms(rest, triangles, face_area, thick, where)
+    prisms, volumes, degenerate = _prisms(rest, triangles, face_area, thick, where)
     return Lattice(
         file=file,
         rest=rest,
@@ -126,6 +129,7 @@ def build_lattice(model: HeadModel, file: TissueFile | None = None) -> Lattice:
         area=np.clip(area, *_AREAS),
         prisms=prisms,
         volumes=volumes,
+        degenerate=degenerate,
         depth=depth,
         thickness=thick,
         skull=skull,
@@ -170,12 +174,16 @@ def _edge_area(edges: Indices, triangles: Indices, face_area: Doubles) -> Double
 
 def _prisms(
     rest: Doubles, triangles: Indices, face_area: Doubles, thick: Doubles, where: Members
-) -> tuple[Prisms, Doubles]:
-    present = ~where.fixed[triangles].all(axis=1) & ~where.absent[triangles].any(axis=1)
+) -> tuple[Prisms, Doubles, Indices]:
+    """The prisms under moving skin, their volumes, and the triangles whose prism would be degenerate."""
+    due = ~where.fixed[triangles].all(axis=1) & ~where.absent[triangles].any(axis=1)
     corners = np.concatenate([triangles, triangles + HYPODERMIS * rest.shape[1]], axis=1)
     volumes = Prisms(corners).volumes(rest.reshape(-1, 3))
-    present &= volumes > _LEAST_VOLUME * thick[triangles].mean(axis=1) * face_area
-    return Prisms(corners[present].astype(np.int32)), volumes[present]
+    sound = volumes > _LEAST_VOLUME * thick[triangles].mean(axis=1) * face_area
+    for layer in (DERMIS, HYPODERMIS):
+        sound &= area_ratio(rest[EPIDERMIS], rest[layer], triangles) > 0.0
+    kept = due & sound
+    return Prisms(corners[kept].astype(np.int32)), volumes[kept], np.flatnonzero(due & ~sound).astype(np.int32)
 
 
 def _pulled(where: Members, beside: SparseMatrix) -> Doubles:

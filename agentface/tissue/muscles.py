@@ -12,29 +12,42 @@ from dataclasses import dataclass
 import numpy as np
 
 from agentface.conventions import SIDES, Doubles
+from agentface.errors import InvalidValueError, Place
 from agentface.head.model import HeadModel
 from agentface.head.muscles import anchor_point
 from agentface.mesh.smoothstep import smoothstep
 from agentface.parameters import COUNT, indices_of
 from agentface.tissue.lattice import Lattice
 from agentface.tissue.layers import HYPODERMIS
-from agentface.tissue.tissue_file import NAMES, LinearRow, MuscleRow, SheetRow, SphincterRow, TissueFile
+from agentface.tissue.tissue_file import NAMES, TISSUE_FILE, LinearRow, MuscleRow, SheetRow, SphincterRow, TissueFile
 
 _TINY = 1e-9
+_SHORTEST_M = 1e-5
 
 
 def nodal_forces(model: HeadModel, lattice: Lattice, file: TissueFile | None = None) -> Doubles:
     """``(23, V, 3)``: the force of every muscle, fully contracted, on each node of the hypodermis.
 
-    ``file`` has other muscles than the lattice's own.
+    ``file`` has other muscles than the lattice's own. Raises InvalidValueError for a muscle that pulls on nothing.
     """
     rows = (lattice.file if file is None else file).muscles
-    return np.stack([row.strength * field for name in NAMES for row, field in [_field(model, lattice, rows, name)]])
+    return np.stack([_force(model, lattice, rows, name) for name in NAMES])
 
 
-def _field(model: HeadModel, lattice: Lattice, rows: dict[str, MuscleRow], name: str) -> tuple[MuscleRow, Doubles]:
+def _force(model: HeadModel, lattice: Lattice, rows: dict[str, MuscleRow], name: str) -> Doubles:
     base, side = (name[:-2], name[-1]) if name[-2:] in ("_l", "_r") else (name, SIDES[0])
-    return rows[base], unit_field(model, lattice, rows[base], side)
+    row = rows[base]
+    place = ("muscles", base)
+    if not isinstance(row, SphincterRow):
+        origin, insertion = (anchor_point(anchor, side, model.landmarks) for anchor in (row.origin, row.insertion))
+        if not np.linalg.norm(insertion - origin) > _SHORTEST_M:
+            where = Place(TISSUE_FILE, (*place, "insertion"))
+            raise InvalidValueError(where, "a point apart from the origin", insertion.round(6).tolist())
+    force = row.strength * unit_field(model, lattice, row, side)
+    if not force.any():
+        hint = "its zone must reach skin of its regions"
+        raise InvalidValueError(Place(TISSUE_FILE, place), "a muscle that pulls on some of the tissue", "none", hint)
+    return force
 
 
 def unit_field(model: HeadModel, lattice: Lattice, row: MuscleRow, side: str) -> Doubles:

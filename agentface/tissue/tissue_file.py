@@ -1,20 +1,18 @@
-"""``tissue.yaml``: the soft tissue of one face and the muscles in it, read and checked."""
+"""The tables of ``tissue.yaml``: the soft tissue of one face and the muscles in it.
+
+What a table holds by itself is checked here; what its names mean, and how numbers fit together, when it is read
+(:mod:`agentface.tissue.reading`).
+"""
 
 from __future__ import annotations
 
-from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import Annotated, Literal
 
-from pydantic import Field, model_validator
+from pydantic import Field
 
-from agentface.config import Document, Table
+from agentface.config import Table
 from agentface.conventions import SIDES
-from agentface.errors import DataError, Fault, did_you_mean
-from agentface.head.landmarks import LANDMARKS, PAIRED_LANDMARKS
 from agentface.head.muscles import Anchor, Territory
-from agentface.head.regions import HALF_REGIONS, SUB_REGIONS
-from agentface.parameters import MUSCLES
-from agentface.resources import data_folder
 
 TISSUE_FILE = "tissue.yaml"
 VolumeForm = Literal["energy", "printed", "signed", "epidermis"]
@@ -26,12 +24,16 @@ TISSUE_MUSCLES = (
 )  # fmt: skip
 """Without side: ten pairs of linear muscles and sheets, and the three sphincters."""
 UNPAIRED = "orbicularis_oris"
-_MOVABLE = (*HALF_REGIONS, *SUB_REGIONS)
+NAMES: tuple[str, ...] = tuple(
+    full for name in TISSUE_MUSCLES for full in ([name] if name == UNPAIRED else [f"{name}_{side}" for side in SIDES])
+)
+"""The 23 muscles with their sides, in the order of forces and contractions."""
 
 _Stiffness = Annotated[float, Field(gt=0, le=100)]
 _Length = Annotated[float, Field(gt=0, le=5)]
 _Millimetres = Annotated[float, Field(gt=0, le=40)]
-_Vector = Annotated[list[float], Field(min_length=3, max_length=3)]
+_Degrees = Annotated[float, Field(ge=-45, le=45)]
+_Way = Annotated[float, Field(ge=-40, le=40)]
 
 
 class LatticeTable(Table):
@@ -42,8 +44,8 @@ class LatticeTable(Table):
     part of it.
     """
 
-    thickness: Annotated[float, Field(gt=0, le=1)]
-    thickness_mm: Annotated[list[_Millimetres], Field(min_length=2, max_length=2)]
+    thickness: Annotated[float, Field(ge=0.05, le=1)]
+    thickness_mm: Annotated[list[Annotated[float, Field(ge=0.1, le=40)]], Field(min_length=2, max_length=2)]
     dermis: Annotated[float, Field(ge=0.1, le=0.9)]
     regions: dict[str, Annotated[float, Field(ge=0.2, le=3)]] = {}
     carried_mm: dict[str, Annotated[float, Field(gt=0, le=30)]]
@@ -85,13 +87,6 @@ class VolumeTable(Table):
     form: VolumeForm
     rho: Annotated[float, Field(ge=0)]
 
-    @model_validator(mode="after")
-    def _bounded(self) -> VolumeTable:
-        if self.rho > LARGEST_RHO[self.form]:
-            limit = LARGEST_RHO[self.form]
-            raise ValueError(f"expected a rho of at most {limit:g}: with the form {self.form} more diverges")
-        return self
-
 
 class HoldTable(Table):
     """Round a landmark: ``times`` the hold on the bone within ``radius_mm``, fading to once at twice that."""
@@ -111,8 +106,8 @@ class SkullTable(Table):
     across: _Stiffness
     contact: _Stiffness
     holds: dict[str, HoldTable] = {}
-    rotate_deg: _Vector = [0.0, 0.0, 0.0]
-    translate_mm: _Vector = [0.0, 0.0, 0.0]
+    rotate_deg: Annotated[list[_Degrees], Field(min_length=3, max_length=3)] = [0.0, 0.0, 0.0]
+    translate_mm: Annotated[list[_Way], Field(min_length=3, max_length=3)] = [0.0, 0.0, 0.0]
     scale: Annotated[list[Annotated[float, Field(ge=0.8, le=1.2)]], Field(min_length=3, max_length=3)] = [1.0, 1.0, 1.0]
 
 
@@ -128,7 +123,7 @@ class _MuscleRow(Territory):
 
     strength: Annotated[float, Field(gt=0, le=100)]
     moved_by: Annotated[dict[str, Annotated[float, Field(gt=0, le=1)]], Field(min_length=1)]
-    action_unit: int
+    action_unit: Annotated[int, Field(ge=1, le=99)]
 
 
 class _FibreRow(_MuscleRow):
@@ -144,13 +139,6 @@ class LinearRow(_FibreRow):
     fall_near: Annotated[float, Field(ge=0, le=5)] = 0.0
     fall_start: _Length
     fall_finish: _Length
-
-    @model_validator(mode="after")
-    def _ordered(self) -> LinearRow:
-        if not self.fall_near < self.fall_start < self.fall_finish:
-            got = f"{self.fall_near:g}, {self.fall_start:g}, {self.fall_finish:g}"
-            raise ValueError(f"expected fall_near, fall_start and fall_finish to grow, not {got}")
-        return self
 
 
 class SheetRow(_FibreRow):
@@ -182,90 +170,10 @@ MuscleRow = Annotated[LinearRow | SheetRow | SphincterRow, Field(discriminator="
 class TissueFile(Table):
     """``tissue.yaml``."""
 
-    depth_mm: dict[str, Annotated[float, Field(ge=0.5, le=40)]]
+    depth_mm: Annotated[dict[str, Annotated[float, Field(ge=0.5, le=40)]], Field(min_length=1)]
     lattice: LatticeTable
     springs: SpringsTable
     volume: VolumeTable
     skull: SkullTable
     dynamics: DynamicsTable
     muscles: dict[str, MuscleRow]
-
-
-def anatomy_file() -> Path:
-    """The anatomist's table, which every face's begins with."""
-    return data_folder("regions") / TISSUE_FILE
-
-
-def tissue_of(folder: Path) -> TissueFile:
-    """The table of a face's folder; raises DataError with all faults, also when there is none."""
-    path = folder / TISSUE_FILE
-    if not path.is_file():
-        hint = f"make one with `agentface calibrate {folder.name} --deformer tissue`, or copy {anatomy_file()}"
-        raise DataError([Fault(path, None, "", "the file: the tissue deformer needs it", "none", hint)])
-    return read_tissue(path)
-
-
-def read_tissue(path: str | Path) -> TissueFile:
-    """The checked table; raises DataError with all faults."""
-    document = Document(path)
-    file = document.collect(TissueFile)
-    data = document.data if isinstance(document.data, dict) else {}
-    _check_names(document, ("depth_mm",), data.get("depth_mm"), _POINTS, "a landmark (paired ones without side)")
-    lattice = data.get("lattice")
-    if isinstance(lattice, dict):
-        _check_names(document, ("lattice", "regions"), lattice.get("regions"), _MOVABLE, "a region without side")
-        carried = lattice.get("carried_mm")
-        _check_names(document, ("lattice", "carried_mm"), carried, PAIRED_LANDMARKS, "a paired landmark without side")
-        _check_thickness(document, lattice.get("thickness_mm"))
-    skull = data.get("skull")
-    if isinstance(skull, dict):
-        _check_names(document, ("skull", "holds"), skull.get("holds"), _POINTS, "a landmark (paired ones without side)")
-    muscles = data.get("muscles")
-    if isinstance(muscles, dict):
-        _check_muscles(document, muscles)
-    document.check()
-    assert file is not None, "a document without faults is parsed"  # noqa: S101 - for the type checker
-    return file
-
-
-_POINTS = tuple(name for name in (*LANDMARKS, *PAIRED_LANDMARKS) if name != "pupil")
-
-
-def _check_names(document: Document, where: tuple[str, ...], table: Any, known: tuple[str, ...], what: str) -> None:
-    for name in table if isinstance(table, dict) else ():
-        if name not in known:
-            document.fault((*where, name), what, str(name), did_you_mean(str(name), known))
-
-
-def _check_thickness(document: Document, bounds: Any) -> None:
-    if isinstance(bounds, list) and len(bounds) == 2 and all(isinstance(bound, float) for bound in bounds):
-        low, high = bounds
-        if high <= low:
-            document.fault(("lattice", "thickness_mm"), "the least, then a larger one", str(bounds))
-
-
-def _check_muscles(document: Document, muscles: dict[str, Any]) -> None:
-    for name in sorted(set(TISSUE_MUSCLES) - muscles.keys()):
-        document.fault(("muscles",), f"an entry for {name}", "none")
-    _check_names(document, ("muscles",), muscles, TISSUE_MUSCLES, "a muscle of the tissue")
-    for name, row in muscles.items():
-        if isinstance(row, dict):
-            where = ("muscles", name)
-            _check_names(document, (*where, "moved_by"), row.get("moved_by"), MUSCLES, "a muscle without side")
-            for key in ("origin", "insertion", "centre"):
-                at = row[key].get("at") if isinstance(row.get(key), dict) else None
-                if isinstance(at, str) and at not in (*_POINTS, "pupil"):
-                    document.fault((*where, key, "at"), "a landmark (paired ones without side)", at)
-            for key in ("regions", "not_regions"):
-                for i, region in enumerate(row[key] if isinstance(row.get(key), list) else []):
-                    if region not in _MOVABLE:
-                        hint = did_you_mean(str(region), _MOVABLE)
-                        document.fault((*where, key, i), f"one of {', '.join(_MOVABLE)}", str(region), hint)
-
-
-NAMES: tuple[str, ...] = tuple(
-    name if name == UNPAIRED else f"{name}_{side}"
-    for name in TISSUE_MUSCLES
-    for side in ("m" if name == UNPAIRED else SIDES)
-)
-"""The 23 muscles with their sides, in the order of forces and contractions."""

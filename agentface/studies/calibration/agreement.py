@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from agentface.conventions import Floats
-from agentface.deform.protocol import DEFAULT_DEFORMER, make_deformer
+from agentface.deform.protocol import DEFAULT_DEFORMER, Deformer, make_deformer
 from agentface.head.model import HeadModel
 from agentface.head.regions import REGIONS
 from agentface.parameters import FacePose
@@ -61,11 +61,9 @@ def agreement(model: HeadModel, muscles: Floats, artists: Floats, *, fitted: boo
     )
 
 
-def measure(
-    model: HeadModel, units: dict[int, ActionUnit], deformer_name: str = DEFAULT_DEFORMER
-) -> dict[int, Agreement]:
-    """The agreement of every action unit in ``units`` on a face, with a whole deformer."""
-    deformer = make_deformer(deformer_name, model)
+def measure(model: HeadModel, units: dict[int, ActionUnit], deformer: Deformer | None = None) -> dict[int, Agreement]:
+    """The agreement of every action unit in ``units`` on a face, with a deformer of it, or with the geometric one."""
+    deformer = make_deformer(DEFAULT_DEFORMER, model) if deformer is None else deformer
     rest = model.vertices
     result = {}
     for number, unit in units.items():

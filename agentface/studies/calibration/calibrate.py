@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import yaml
 
-from agentface.deform.protocol import DEFAULT_DEFORMER
+from agentface.deform.protocol import DEFAULT_DEFORMER, make_deformer
 from agentface.head.model import HeadModel, load_model
 from agentface.head.muscles import MusclesFile, read_muscles
 from agentface.resources import data_folder
@@ -53,7 +53,7 @@ def table(models: list[HeadModel], deformer_name: str = DEFAULT_DEFORMER) -> str
         "|---|---|---|---|---|---|---|---|---|",
     ]
     for model in models:
-        rows = measure(model, units, deformer_name)
+        rows = measure(model, units, make_deformer(deformer_name, model))
         for number, row in rows.items():
             lines.append(
                 f"| {model.name} | {number} | {units[number].name} | {row.cosine:.2f} | {row.covered:.2f} "

@@ -6,30 +6,33 @@ solution of the same system; what the equilibrium has beyond that is a backgroun
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
 
 from agentface.conventions import SIDES, Doubles
+from agentface.errors import InvalidValueError, Place
 from agentface.head.model import HeadModel
 from agentface.studies.calibration.action_units import ActionUnit, load_action_units
+from agentface.studies.calibration.tissue_knobs import knobs, turned, values_of
+from agentface.studies.calibration.tissue_loss import ShapeLoss
 from agentface.tissue.columns import Columns, coloured, pack, unpacked
 from agentface.tissue.lattice import Lattice, build_lattice
 from agentface.tissue.layers import EPIDERMIS, HYPODERMIS
 from agentface.tissue.muscles import unit_field
 from agentface.tissue.solvers.equilibrium import gradually, new_loads
 from agentface.tissue.solvers.newton import factors, solve
-from agentface.tissue.tissue_file import TISSUE_MUSCLES, UNPAIRED, LinearRow, MuscleRow, SheetRow, TissueFile
+from agentface.tissue.tissue_file import TISSUE_FILE, TISSUE_MUSCLES, UNPAIRED, MuscleRow, TissueFile
 
 Progress = Callable[[str], None]
-_BONE_END, _SKIN_END = 0.40, 0.25
-"""How far the two ends may go from the anatomist's, in eye separations."""
-_STRETCH, _DIRECTION, _OUTSIDE, _HOME = 0.45, 0.8, 1.0, 0.05
-_SOFT = 0.04
-_ROUNDS = 2
+_HOME = 0.05
+"""The pull to the anatomist's values."""
+_ROUNDS = (30, 15, 15)
+"""Steps of each search; after each the background is made anew."""
 _LOG_STRENGTH = -5.0, 4.6
+_STEP = 2e-3
+"""Of a knob's range: for the change of a muscle's forces with it."""
 _DIGITS = 4
 _TOGETHER = {"levator_alaeque_nasi": {"corrugator": 0.5}}
 """What else contracts in the action unit that a muscle is fitted to."""
@@ -43,212 +46,128 @@ _PARTS = {
 """Of the artists' shape: what muscle and tissue are to make of it; the lips' own model has the rest of pucker."""
 
 
-@dataclass(frozen=True)
-class Knob:
-    """A number of a row that the fit may turn: how to read it, how to set it, and between what."""
-
-    where: tuple[str, int] | tuple[str, str, int] | tuple[str]
-    low: float
-    high: float
-
-
-def knobs(row: MuscleRow) -> list[Knob]:
-    """What the fit may turn of a muscle's row, the anatomist's values in the middle of anchors' ranges."""
-    if isinstance(row, (LinearRow, SheetRow)):
-        result = [
-            Knob((end, "offset", axis), getattr(row, end).offset[axis] - far, getattr(row, end).offset[axis] + far)
-            for end, far in (("origin", _BONE_END), ("insertion", _SKIN_END))
-            for axis in range(3)
-        ]
-        if isinstance(row, SheetRow):
-            return [
-                *result,
-                Knob(("half_width",), 0.11, 0.76),
-                Knob(("above",), 0.11, 1.14),
-                Knob(("below",), 0.08, 0.57),
-            ]
-        start, finish = row.fall_start, row.fall_finish
-        reach = (
-            Knob(("fall_near",), 0.0, 0.8 * start),
-            Knob(("fall_start",), 0.6 * start, 1.3 * start),
-            Knob(("fall_finish",), 0.7 * finish, 1.4 * finish),
-        )
-        return [*result, Knob(("zone_deg",), 8.0, 60.0), *reach]
-    y, z = row.centre.offset[1:]
-    return [
-        Knob(("centre", "offset", 1), y - 0.38, y + 0.38),
-        Knob(("centre", "offset", 2), z - 0.23, z + 0.26),
-        Knob(("radii", 0), 0.34, 1.04),
-        Knob(("radii", 1), 0.26, 0.95),
-        Knob(("crest",), 0.3, 0.9),
-        Knob(("upper",), 0.0, 1.0),
-        Knob(("outward",), -0.5, 1.0),
-    ]
-
-
-def turned(row: MuscleRow, turned_knobs: list[Knob], values: Doubles, strength: float, digits: int = 12) -> MuscleRow:
-    """A row with its knobs at ``values``, rounded to ``digits`` after the point."""
-    content: dict[str, Any] = row.model_dump()
-    for knob, value in zip(turned_knobs, values.tolist(), strict=True):
-        target: Any = content
-        for key in knob.where[:-1]:
-            target = target[key]
-        target[knob.where[-1]] = round(value, digits)
-    if isinstance(row, LinearRow):
-        content["fall_start"] = max(content["fall_start"], round(content["fall_near"] + 0.09, digits))
-        content["fall_finish"] = max(content["fall_finish"], round(content["fall_start"] + 0.09, digits))
-    content["strength"] = round(strength, digits)
-    return type(row).model_validate(content)
-
-
-def read(row: MuscleRow, its_knobs: list[Knob]) -> Doubles:
-    """The values of a row's knobs."""
-    content: dict[str, Any] = row.model_dump()
-    values = []
-    for knob in its_knobs:
-        value: Any = content
-        for key in knob.where:
-            value = value[key]
-        values.append(value)
-    return np.array(values)
-
-
 class TissueFitter:
-    """Fits the muscles of one face, a model without asymmetry."""
+    """Fits the muscles of one face.
+
+    Args:
+        model: the face, without asymmetry.
+        file: its tissue, and the muscles from which the fit starts.
+    """
 
     def __init__(self, model: HeadModel, file: TissueFile) -> None:
         self.model, self.file = model, file
         self.lattice: Lattice = build_lattice(model, file)
-        self.columns: Columns = pack(self.lattice, coloured(self.lattice, model.mirror))
-        self.count = len(self.lattice.free)
-        self.factors: Any = factors(self.lattice, self.lattice.points)
-        edges = self.lattice.edges
-        present = self.lattice.free[edges].any(axis=1) & ~self.lattice.members.absent[edges].any(axis=1)
-        self.edges = edges[present]
-        ends = self.lattice.rest[EPIDERMIS][self.edges]
-        self.lengths = np.maximum(np.linalg.norm(ends[:, 0] - ends[:, 1], axis=1), 1.0)
+        self._columns: Columns = pack(self.lattice, coloured(self.lattice, model.mirror))
+        self._count = len(self.lattice.free)
+        self._factors: Any = factors(self.lattice, self.lattice.points)
 
-    def solve(self, forces: Doubles) -> Doubles:
-        """``(3, V, 3)``: the linear response to ``forces (3, V, 3)``."""
-        return solve(self.lattice, self.factors, forces.reshape(-1, 3)).reshape(forces.shape)
-
-    def force(self, name: str, row: MuscleRow) -> Doubles:
-        """``(3, V, 3)``: the force of a muscle, or of a pair, at strength 1."""
-        result = np.zeros((3, self.count, 3))
-        for side in SIDES if name != UNPAIRED else SIDES[:1]:
-            result[HYPODERMIS] += unit_field(self.model, self.lattice, row, side)
-        return result
+    def response(self, forces: Doubles) -> Doubles:
+        """``(3, V, 3)`` mm: the linear response to ``forces (3, V, 3)``."""
+        return solve(self.lattice, self._factors, forces.reshape(-1, 3)).reshape(forces.shape)
 
     def equilibrium(self, forces: Doubles) -> Doubles:
-        """``(3, V, 3)``: the movement under ``forces``."""
-        there = gradually(self.columns, new_loads(self.columns, forces[HYPODERMIS]))
-        return unpacked(self.columns, there) - self.lattice.rest
+        """``(3, V, 3)`` mm: the movement under ``forces (3, V, 3)`` on the hypodermis."""
+        there = gradually(self._columns, new_loads(self._columns, forces[HYPODERMIS]))
+        return unpacked(self._columns, there) - self.lattice.rest
+
+    def force(self, name: str, row: MuscleRow) -> Doubles:
+        """``(3, V, 3)``: the force of a muscle, or of a pair."""
+        result = np.zeros((3, self._count, 3))
+        for side in SIDES if name != UNPAIRED else SIDES[:1]:
+            result[HYPODERMIS] += unit_field(self.model, self.lattice, row, side)
+        return row.strength * result
 
     def fit(self, progress: Progress) -> TissueFile:
-        """The file with the muscles fitted, in the order of the table."""
-        units = load_action_units()
-        rows: dict[str, MuscleRow] = dict(self.file.muscles)
+        """The file with its muscles fitted one after the other; ``progress`` is told of each.
+
+        Raises InvalidValueError for a muscle whose action unit is not in ``rules/action_units.yaml``, and DataError
+        where the face has not the artists' shapes.
+        """
+        units, rows = load_action_units(), dict(self.file.muscles)
+        for name, row in rows.items():
+            if row.action_unit not in units:
+                place = Place(TISSUE_FILE, ("muscles", name, "action_unit"))
+                raise InvalidValueError(place, f"one of {', '.join(map(str, units))}", row.action_unit)
         for name in TISSUE_MUSCLES:
-            others = sum(
-                (
-                    part * rows[other].strength * self.force(other, rows[other])
-                    for other, part in _TOGETHER.get(name, {}).items()
-                ),
-                np.zeros((3, self.count, 3)),
-            )
-            rows[name], error = _MuscleFit(self, name, rows[name], units[rows[name].action_unit], others).run()
-            progress(f"{name}: {error:.3f}")
+            others = np.zeros((3, self._count, 3))
+            for other, part in _TOGETHER.get(name, {}).items():
+                others += part * self.force(other, rows[other])
+            rows[name], loss = MuscleFit(self, name, rows[name], units[rows[name].action_unit], others).run()
+            progress(f"{name}: {loss:.3f}")
         return self.file.model_copy(update={"muscles": rows})
 
 
-class _MuscleFit:
-    """One muscle against the shape of its action unit."""
+class MuscleFit:
+    """One muscle against the shape of its action unit.
+
+    A place ``(K + 1,)`` is where the muscle's knobs stand, 0..1 of their ranges, and the logarithm of its strength.
+
+    Args:
+        fitter: of the face.
+        name: of the muscle, without side.
+        row: where it starts.
+        unit: what it is to make.
+        others: ``(3, V, 3)``, the force of what contracts with it.
+    """
 
     def __init__(self, fitter: TissueFitter, name: str, row: MuscleRow, unit: ActionUnit, others: Doubles) -> None:
-        self.fitter, self.name, self.row, self.others = fitter, name, row, others
-        self.knobs = knobs(row)
-        self.low = np.array([knob.low for knob in self.knobs])
-        self.width = np.array([knob.high for knob in self.knobs]) - self.low
+        self._fitter, self._name, self._row, self._others = fitter, name, row, others
+        self._knobs = knobs(row)
+        self._low = np.array([knob.low for knob in self._knobs])
+        self._width = np.array([knob.high for knob in self._knobs]) - self._low
         part = unit.strength * _PARTS.get(name, 1.0)
-        self.target = part * 1e3 * unit.shape(fitter.model).astype(np.float64)
-        size = np.linalg.norm(self.target, axis=1)
-        self.peak = float(size[fitter.lattice.free].max())
-        self.inside = (size > 0.25 * self.peak) & fitter.lattice.free
-        self.background = np.zeros_like(fitter.lattice.rest)
+        self._shape = ShapeLoss(fitter.lattice, part * 1e3 * unit.shape(fitter.model).astype(np.float64))
+        self._background = np.zeros_like(fitter.lattice.rest)
+        self._home = np.clip((values_of(row, self._knobs) - self._low) / self._width, 0.0, 1.0)
 
-    def run(self) -> tuple[MuscleRow, float]:
-        """The fitted row, and what its loss is."""
+    def start(self) -> Doubles:
+        """The anatomist's place, as strong as the largest displacement asks for."""
+        unit_force = self._force(np.append(self._home, 0.0))
+        response = self._fitter.response(unit_force)[EPIDERMIS]
+        size = max(float(np.linalg.norm(response, axis=1).max()), 1e-6)
+        return np.append(self._home, np.log(self._shape.peak / size))
+
+    def run(self, rounds: Sequence[int] = _ROUNDS) -> tuple[MuscleRow, float]:
+        """The fitted row, and its loss, after searches of so many steps each."""
         from scipy.optimize import minimize
 
-        place = (read(self.row, self.knobs) - self.low) / self.width
-        self.home = place = np.clip(place, 0.0, 1.0)
-        response = self.fitter.solve(self._force(np.append(place, 0.0)))[EPIDERMIS]
-        size = max(float(np.linalg.norm(response, axis=1).max()), 1e-6)
-        place = np.append(place, np.log(self.peak / size))
-        if self.others.any():
-            self.background = self.fitter.equilibrium(self.others)
-        bounds = [(0.0, 1.0)] * len(self.knobs) + [_LOG_STRENGTH]
-        for turn in range(1 + _ROUNDS):
-            most = 30 if turn == 0 else 15
-            found = minimize(self._loss, place, jac=True, method="L-BFGS-B", bounds=bounds, options={"maxiter": most})
-            place = found.x
+        place, loss = self.start(), float("inf")
+        if self._others.any():
+            self._background = self._fitter.equilibrium(self._others)
+        bounds = [(0.0, 1.0)] * len(self._knobs) + [_LOG_STRENGTH]
+        for most in rounds:
+            found = minimize(self.loss, place, jac=True, method="L-BFGS-B", bounds=bounds, options={"maxiter": most})
+            place, loss = found.x, float(found.fun)
             force = self._force(place)
-            self.background = self.fitter.equilibrium(force + self.others) - self.fitter.solve(force)
-        return self._row(place, _DIGITS), float(found.fun)
+            self._background = self._fitter.equilibrium(force + self._others) - self._fitter.response(force)
+        return self._at(place, _DIGITS), loss
 
-    def _row(self, place: Doubles, digits: int = 12) -> MuscleRow:
-        return turned(self.row, self.knobs, self.low + place[:-1] * self.width, float(np.exp(place[-1])), digits)
-
-    def _force(self, place: Doubles) -> Doubles:
-        row = self._row(place)
-        return row.strength * self.fitter.force(self.name, row)
-
-    def _loss(self, place: Doubles) -> tuple[float, Doubles]:
-        """The loss and its gradient, by the adjoint of the linear response."""
+    def loss(self, place: Doubles) -> tuple[float, Doubles]:
+        """The loss at a place and its gradient ``(K + 1,)``, by the adjoint of the linear response."""
         force = self._force(place)
-        moved = self.fitter.solve(force) + self.background
-        value, slope = self._shape_loss(moved[EPIDERMIS])
+        moved = self._fitter.response(force) + self._background
+        value, slope = self._shape.shape(moved[EPIDERMIS])
         full = np.zeros_like(moved)
         full[EPIDERMIS] = slope
         for layer in (EPIDERMIS, HYPODERMIS):
-            more, slope = self._stretch_loss(moved[layer])
+            more, slope = self._shape.stretch(moved[layer])
             value, full[layer] = value + more, full[layer] + slope
-        home = _HOME * (place[:-1] - self.home)
-        adjoint = self.fitter.solve(full)
+        away = _HOME * (place[:-1] - self._home)
+        adjoint = self._fitter.response(full)
         gradient = np.empty(len(place))
         for index in range(len(place) - 1):
-            step = 2e-3 if place[index] < 0.5 else -2e-3
+            step = _STEP if place[index] < 0.5 else -_STEP
             other = place.copy()
             other[index] += step
-            gradient[index] = ((self._force(other) - force) * adjoint).sum() / step + 2.0 * _HOME * home[index]
+            gradient[index] = ((self._force(other) - force) * adjoint).sum() / step + 2.0 * _HOME * away[index]
         gradient[-1] = (force * adjoint).sum()
-        return value + float((home**2).sum()), gradient
+        return value + float((away**2).sum()), gradient
 
-    def _shape_loss(self, moved: Doubles) -> tuple[float, Doubles]:
-        """How far and which way the skin goes, against the target; most where that is largest."""
-        target, free = self.target, self.fitter.lattice.free
-        size, count = np.linalg.norm(target, axis=1), int(self.inside.sum())
-        weight = np.where(self.inside, 1.0 + 4.0 * (size / self.peak) ** 4, _OUTSIDE) * free
-        weight /= self.peak * np.sqrt(count)
-        off = (moved - target) * weight[:, None]
-        slope = 2.0 * off * weight[:, None]
-        chosen, ways = moved[self.inside], target[self.inside] / size[self.inside, None]
-        length = np.linalg.norm(chosen, axis=1, keepdims=True)
-        soft = length + _SOFT * self.peak
-        wrong = chosen / soft - ways
-        part = _DIRECTION**2 / count
-        value = float((off**2).sum() + part * (wrong**2).sum())
-        along = (chosen * wrong).sum(axis=1, keepdims=True) / (np.maximum(length, 1e-9) * soft**2)
-        slope[self.inside] += 2.0 * part * (wrong / soft - chosen * along)
-        return value, slope
+    def _at(self, place: Doubles, digits: int | None = None) -> MuscleRow:
+        values, strength = self._low + place[:-1] * self._width, float(np.exp(place[-1]))
+        if digits is None:
+            return turned(self._row, self._knobs, values, strength)
+        return turned(self._row, self._knobs, values, strength, digits)
 
-    def _stretch_loss(self, moved: Doubles) -> tuple[float, Doubles]:
-        """The stretch along edges of what differs from the target, squared: no pinching."""
-        a, b = self.fitter.edges.T
-        off = (moved - self.target)[a] - (moved - self.target)[b]
-        part = _STRETCH**2 / int(self.inside.sum())
-        value = part * float(((off / self.fitter.lengths[:, None]) ** 2).sum())
-        pull, slope = 2.0 * part * off / self.fitter.lengths[:, None] ** 2, np.zeros_like(moved)
-        np.add.at(slope, a, pull)
-        np.subtract.at(slope, b, pull)
-        return value, slope
+    def _force(self, place: Doubles) -> Doubles:
+        return self._fitter.force(self._name, self._at(place))

@@ -12,7 +12,7 @@ from agentface.resources import face_names
 from agentface.studies.calibration.action_units import load_action_units
 from agentface.studies.calibration.agreement import Agreement, agreement, measure
 from agentface.studies.calibration.calibrate import table
-from agentface.studies.calibration.limits import BEGIN, END, between_marks, missed, with_table
+from agentface.studies.calibration.limits import END, begin_of, between_marks, missed, with_table
 from tests.heads import head_model
 
 DOCUMENT = Path(__file__).parents[3] / "docs" / "calibration.md"
@@ -95,8 +95,8 @@ def test_a_face_without_the_artists_shapes_is_refused(amber):
 
 
 def test_the_table_takes_the_place_of_the_old_one_and_nothing_else():
-    text = f"# A\n\n{BEGIN}| old |\n{END}\nB\n"
-    assert with_table(text, "| new |\n") == f"# A\n\n{BEGIN}| new |\n{END}\nB\n"
-    for broken in ("", "| old |", text.replace(BEGIN, ""), text.replace(END, "")):
+    text = f"# A\n\n{begin_of()}| old |\n{END}\nB\n"
+    assert with_table(text, "| new |\n") == f"# A\n\n{begin_of()}| new |\n{END}\nB\n"
+    for broken in ("", "| old |", text.replace(begin_of(), ""), text.replace(END, "")):
         with pytest.raises(OutputError, match="begin"):
             with_table(broken, "| new |\n")

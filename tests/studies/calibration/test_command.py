@@ -12,7 +12,7 @@ from agentface.head.muscles import read_muscles
 from agentface.resources import face_folder, face_names
 from agentface.studies.calibration import calibrate as fitting
 from agentface.studies.calibration.calibrate import anatomy_file, table
-from agentface.studies.calibration.limits import BEGIN, END
+from agentface.studies.calibration.limits import END, begin_of
 from tests.heads import head_model
 
 
@@ -60,9 +60,9 @@ def test_the_table_as_json():
 
 def test_the_table_goes_into_a_document(tmp_path):
     path = tmp_path / "a.md"
-    path.write_text(f"# Title\n{BEGIN}{END}End\n", encoding="utf-8")
+    path.write_text(f"# Title\n{begin_of()}{END}End\n", encoding="utf-8")
     call("onyx", "--table", "-o", path)
-    assert path.read_text(encoding="utf-8") == f"# Title\n{BEGIN}{table([head_model('onyx')])}{END}End\n"
+    assert path.read_text(encoding="utf-8") == f"# Title\n{begin_of()}{table([head_model('onyx')])}{END}End\n"
 
 
 def test_a_document_without_a_place_is_left_alone(tmp_path):
