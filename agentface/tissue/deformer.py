@@ -6,7 +6,7 @@ from functools import partial
 
 import numpy as np
 
-from agentface.conventions import Floats
+from agentface.conventions import Doubles, Floats
 from agentface.deform import order
 from agentface.deform import tables as skin_tables
 from agentface.deform.finish import order as last_part
@@ -17,8 +17,11 @@ from agentface.deform.protocol import Frames
 from agentface.head.model import HeadModel
 from agentface.parameters import FacePose, check_pose
 from agentface.tissue import skin, tables
+from agentface.tissue.columns import unpacked
 from agentface.tissue.solvers.equilibrium import equilibrium
 from agentface.tissue.solvers.solver import DEFAULT_SOLVER, make_solver
+from agentface.tissue.tables import TissueTables
+from agentface.tissue.tissue_file import TissueFile
 
 
 class TissueDeformer:
@@ -31,15 +34,23 @@ class TissueDeformer:
         model: the face; its folder must have a ``tissue.yaml``.
         solver: one of :func:`agentface.tissue.solvers.solver.solver_names`.
         compiled: False for numpy, the same to 0.01 mm, seconds a frame.
+        tissue: prepared tables of the face; by its ``tissue.yaml`` when None.
 
     Raises:
         DataError: with the faults of ``tissue.yaml``, or that there is none.
         UnknownNameError: for a solver that is not there.
     """
 
-    def __init__(self, model: HeadModel, solver: str = DEFAULT_SOLVER, *, compiled: bool = True) -> None:
-        self._model, self._compiled = model, compiled
-        self._tissue = tables.of(model, compiled=compiled)
+    def __init__(
+        self,
+        model: HeadModel,
+        solver: str = DEFAULT_SOLVER,
+        *,
+        compiled: bool = True,
+        tissue: TissueTables | None = None,
+    ) -> None:
+        self._model, self._solver_name, self._compiled = model, solver, compiled
+        self._tissue = tables.of(model, compiled=compiled) if tissue is None else tissue
         self._tables = skin_tables.of(model)
         self._points = self._tables.skin.rest.copy()
         self._deform, self._finish, self._put = order.deform, last_part.finish, skin.put
@@ -73,7 +84,7 @@ class TissueDeformer:
 
     def worker(self) -> Frames:
         """Writes rows of equilibria into rows of faces; each worker may be at work at the same time as the others."""
-        own = TissueDeformer(self._model, compiled=self._compiled)
+        own = TissueDeformer(self._model, compiled=self._compiled, tissue=self._tissue)
 
         def frames(first: int, last: int, poses: Floats, faces: FaceArrays) -> None:
             for index in range(first, last):
@@ -82,6 +93,26 @@ class TissueDeformer:
                     row[index] = array
 
         return frames
+
+    @property
+    def tissue(self) -> TissueTables:
+        """The tables that it was made with."""
+        return self._tissue
+
+    @property
+    def nodes(self) -> Doubles:
+        """``(3, V, 3)`` mm: the lattice as the last step left it, with the jaw closed; a new array."""
+        return unpacked(self._tissue.columns, self._solver.positions)
+
+    def remade(self, file: TissueFile, pose: FacePose) -> TissueDeformer:
+        """Another one of the face, by ``file`` and with the same solver, that stands still in ``pose``; takes seconds.
+
+        It shares nothing that a step changes, so that this one may go on meanwhile.
+        """
+        prepared = tables.prepare(self._model, file, compiled=self._compiled)
+        other = TissueDeformer(self._model, self._solver_name, compiled=self._compiled, tissue=prepared)
+        other.reset(pose)
+        return other
 
     def _contractions(self, pose: FacePose) -> np.typing.NDArray[np.float64]:
         check_pose(pose.array)
