@@ -13,7 +13,7 @@ import numpy as np
 from agentface.clock import Clock, SystemClock
 from agentface.conventions import Bytes, check_duration
 from agentface.deform.geometry import FaceGeometry
-from agentface.deform.protocol import DEFAULT_DEFORMER, make_deformer
+from agentface.deform.protocol import DEFAULT_DEFORMER, Deformer, make_deformer
 from agentface.emotion.explanation import Explanation
 from agentface.emotion.inference import default_inference
 from agentface.emotion.state import EMOTIONS, NEUTRAL, EmotionState, canonical_or_neutral
@@ -193,6 +193,17 @@ class Face:
         """
         self._inference.contractions({EMOTIONS[0]: 1.0})
         self._deformer.at(FacePose.of(**dict.fromkeys(MUSCLES, 1.0)))
+
+    @property
+    def deformer(self) -> Deformer:
+        """What makes a face of a pose."""
+        return self._deformer
+
+    def take_deformer(self, deformer: Deformer) -> None:
+        """Go on with another deformer of this face, from wherever that stands."""
+        self._deformer = deformer
+        self._stepped = self.pose, None
+        self._touch()
 
     @property
     def emotion(self) -> EmotionState:

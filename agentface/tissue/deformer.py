@@ -6,7 +6,7 @@ from functools import partial
 
 import numpy as np
 
-from agentface.conventions import Floats
+from agentface.conventions import Doubles, Floats
 from agentface.deform import order
 from agentface.deform import tables as skin_tables
 from agentface.deform.finish import order as last_part
@@ -17,16 +17,19 @@ from agentface.deform.protocol import Frames
 from agentface.head.model import HeadModel
 from agentface.parameters import FacePose, check_pose
 from agentface.tissue import skin, tables
+from agentface.tissue.columns import unpacked
 from agentface.tissue.solvers.equilibrium import equilibrium
 from agentface.tissue.solvers.solver import DEFAULT_SOLVER, make_solver
 from agentface.tissue.tables import TissueTables
+from agentface.tissue.tissue_file import TissueFile
 
 
 class TissueDeformer:
     """The physical face of Zhang, Prakash and Sung: it has mass, and each pose has one equilibrium.
 
-    Tissue takes the place of the geometric face's vector muscles, volumes and limits; orbicularis oris, lids, jaw,
-    lips, contact, wrinkles and neck are the same. It is solved with the jaw closed; the jaw carries it along.
+    Tissue takes the place of the geometric face's vector muscles, of the volumes that they gather and of limits;
+    orbicularis oris, lids, jaw, lips, contact, wrinkles and neck are the same. It is solved with the jaw closed; the jaw
+    carries it along.
 
     Args:
         model: the face; its folder must have a ``tissue.yaml``.
@@ -47,7 +50,7 @@ class TissueDeformer:
         compiled: bool = True,
         tissue: TissueTables | None = None,
     ) -> None:
-        self._model, self._compiled = model, compiled
+        self._model, self._solver_name, self._compiled = model, solver, compiled
         self._tissue = tables.of(model, compiled=compiled) if tissue is None else tissue
         self._tables = skin_tables.of(model)
         self._points = self._tables.skin.rest.copy()
@@ -57,6 +60,7 @@ class TissueDeformer:
             from agentface.tissue import skin_compiled
 
             self._deform, self._finish, self._put = order_compiled.deform, order_compiled.finish, skin_compiled.put
+        self._driven = self._tissue.drive.weights.any(axis=0)
         self._solver = make_solver(solver, self._tissue, compiled=compiled)
         self._shown = self._new_geometry()
 
@@ -82,7 +86,7 @@ class TissueDeformer:
 
     def worker(self) -> Frames:
         """Writes rows of equilibria into rows of faces; each worker may be at work at the same time as the others."""
-        own = TissueDeformer(self._model, compiled=self._compiled)
+        own = TissueDeformer(self._model, compiled=self._compiled, tissue=self._tissue)
 
         def frames(first: int, last: int, poses: Floats, faces: FaceArrays) -> None:
             for index in range(first, last):
@@ -92,12 +96,34 @@ class TissueDeformer:
 
         return frames
 
-    def _contractions(self, pose: FacePose) -> np.typing.NDArray[np.float64]:
+    @property
+    def tissue(self) -> TissueTables:
+        """The tables that it was made with."""
+        return self._tissue
+
+    @property
+    def nodes(self) -> Doubles:
+        """``(3, V, 3)`` mm: the lattice as the last step left it, with the jaw closed; a new array."""
+        return unpacked(self._tissue.columns, self._solver.positions)
+
+    def remade(self, file: TissueFile, pose: FacePose) -> TissueDeformer:
+        """Another one of the face, by ``file`` and with the same solver, that stands still in ``pose``; takes seconds.
+
+        It shares nothing that a step changes, so that this one may go on meanwhile.
+        """
+        prepared = tables.prepare(self._model, file, compiled=self._compiled)
+        other = TissueDeformer(self._model, self._solver_name, compiled=self._compiled, tissue=prepared)
+        other.reset(pose)
+        return other
+
+    def _contractions(self, pose: FacePose) -> Doubles:
         check_pose(pose.array)
         return self._tissue.drive.contractions(pose.array.astype(np.float64))
 
     def _write(self, positions: Floats, values: Floats, geometry: FaceGeometry) -> None:
         self._put(self._tissue.epidermis, positions, self._points)
+        others = np.where(self._driven, np.float32(0.0), values)  # tissue gathers by itself where its muscles pull
+        self._deform(int(Stage.VOLUMES), int(Stage.VOLUMES), self._tables.skin, others, self._points)
         self._deform(int(Stage.ORBICULARIS_ORIS), int(Stage.MIDPOINTS), self._tables.skin, values, self._points)
         geometry.vertices[:] = self._points[: len(geometry.vertices)]
         first, last = int(FinishStage.SMOOTH_NORMALS), int(FinishStage.NECK)

@@ -12,7 +12,7 @@ import numpy as np
 
 from agentface.conventions import Floats, Indices
 from agentface.deform.lanes import LANES
-from agentface.deform.simd import inverse_root, larger, largest, load, splat, store
+from agentface.deform.simd import choose, inverse_root, larger, largest, load, splat, store
 from agentface.kernel import kernel
 from agentface.tissue.columns import NODES, Columns
 from agentface.tissue.forces_compiled import held
@@ -159,7 +159,7 @@ def put_between(matrix: Any, node: Any, other: Any, state: Any) -> Any:
 def sweep(
     columns: Columns, positions: Floats, loads: Floats, batches: Indices, count: int, longer: float, moved: Floats
 ) -> None:
-    """One step of each of the first ``count`` of ``batches``, ``longer`` times Newton's.
+    """One step of each of the first ``count`` of ``batches``, ``longer`` times Newton's; from the bone, Newton's.
 
     ``positions`` are moved in place; ``loads (B, 3, LANES)`` act on the hypodermis; ``moved (B,)`` gets the largest
     step of each batch in mm, squared.
@@ -260,10 +260,13 @@ def sweep(
         store(force, 7 * LANES, hypodermis[1] + fy + load(loads, normal + LANES))
         store(force, 8 * LANES, hypodermis[2] + fz + load(loads, normal + 2 * LANES))
         step(matrix, force)
+        # a longer step from the bone would leave it, and the next one come back: what touches it takes Newton's
+        touching = across - load(columns.tether, (2 * batch + 1) * LANES)
+        length = choose(zero - touching, splat(relax), splat(ONE))
         at = batch * NODES * LANES
         most = zero
         for component in range(NODES):
-            move = relax * load(force, component * LANES)
+            move = length * load(force, component * LANES)
             most = larger(most, move * move)
             store(positions, at + component * LANES, load(positions, at + component * LANES) + move)
         moved[batch] = largest(most)

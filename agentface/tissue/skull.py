@@ -21,16 +21,19 @@ class Skull:
 
     Attributes:
         points: ``(V, 3)`` mm, with the jaw closed.
+        fitted: the same before it was nudged.
         jaw_weights: ``(V,)`` 0..1, how far each point belongs to the jaw.
     """
 
     points: Doubles
+    fitted: Doubles
     jaw_weights: Floats
 
 
 def fit_skull(model: HeadModel, bone: Doubles, beside: SparseMatrix, table: SkullTable) -> Skull:
     """The skull through ``bone (V, 3)`` mm, the ends of the depths, evened out; then moved by ``table``."""
-    return Skull(moved(smoothed(beside, bone, _ROUNDS), table), model.jaw_weights)
+    fitted = smoothed(beside, bone, _ROUNDS)
+    return Skull(moved(fitted, table), fitted, model.jaw_weights)
 
 
 def moved(points: Doubles, table: SkullTable) -> Doubles:

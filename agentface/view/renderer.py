@@ -29,6 +29,7 @@ from agentface.view.hair.hairline import Hairline, hair_shade, hidden
 from agentface.view.hair.head_hair import HeadHair
 from agentface.view.hair.ribbons import HairArray
 from agentface.view.parts.anchored import AnchoredArray, eye_linings
+from agentface.view.parts.bone import Bone, BoneView
 from agentface.view.parts.mouth import Mouth
 from agentface.view.parts.rigid import Eyeball, RigidPart
 from agentface.view.skin import pores
@@ -143,6 +144,7 @@ class Renderer:
         quality: str = "fast",
         *,
         alpha: bool = False,
+        bone: Bone | None = None,
     ) -> Bytes:
         """A picture of ``geometry`` as ``(height, width, 3)`` uint8 sRGB, the top row first.
 
@@ -152,13 +154,14 @@ class Renderer:
             camera: a camera, or the name of a view: front, three-quarter, profile.
             quality: ``fast`` or ``portrait``.
             alpha: leave the background out: ``(height, width, 4)`` with straight (not premultiplied) alpha.
+            bone: show this under the skin, which is then a film, without hair.
 
         Raises InvalidValueError for a wrong size, UnknownNameError for an unknown view or quality, GraphicsError when
         the driver has lost the context, in a child forked after the parent had drawn, and after :meth:`close`.
         """
         with self._ownership.current():
             targets = self._targets_for(size, quality)
-            self.draw(geometry, targets, camera, quality, alpha=alpha)
+            self.draw(geometry, targets, camera, quality, alpha=alpha, bone=bone)
             finish(self.context)
             picture = targets.read(alpha=alpha)
             self._lost.check()
@@ -174,20 +177,26 @@ class Renderer:
         onto: Any = None,
         *,
         alpha: bool = False,
+        bone: Bone | None = None,
     ) -> None:
-        """Draw into the picture of ``targets``, and copy it to the framebuffer ``onto``; ``alpha``: no background."""
+        """Draw into the picture of ``targets``, and copy it to the framebuffer ``onto``; the rest as :meth:`render`."""
         with self._ownership.current():
-            self._draw(geometry, targets, camera, quality, alpha=alpha)
+            self._draw(geometry, targets, camera, quality, alpha=alpha, bone=bone)
             if onto is not None:
                 onto.use()
                 targets.light.use(0)
                 self._screens["copy"].render(self.context.TRIANGLES, 3)
 
     def _draw(
-        self, geometry: FaceGeometry, targets: Targets, camera: Camera | str, quality: str, *, alpha: bool
+        self,
+        geometry: FaceGeometry,
+        targets: Targets,
+        camera: Camera | str,
+        quality: str,
+        *,
+        alpha: bool,
+        bone: Bone | None,
     ) -> None:
-        import moderngl
-
         context, detail = self.context, quality_named(quality)
         seen_from = named_view(self.model, camera) if isinstance(camera, str) else camera
         self.upload_skin(geometry)
@@ -203,34 +212,48 @@ class Renderer:
             self._shadow.draw()
         self._shadow.use(2)
         self._clear(targets, alpha=alpha)
-        context.enable_only(moderngl.DEPTH_TEST)
-        if self._head_hair is not None:
-            self._head_hair.draw_solid(quality, seen_from, geometry.head)
+        context.enable_only(context.DEPTH_TEST)
+        if bone is None:
+            self._draw_face(geometry, targets, seen_from, quality)
+        else:
+            self._draw_bone(geometry, targets, bone)
+        context.enable_only(context.NOTHING)
+        if targets.samples:
+            finish(context)
+            context.copy_framebuffer(targets.picture, targets.scene)
+
+    def _draw_face(self, geometry: FaceGeometry, targets: Targets, seen_from: Camera, quality: str) -> None:
+        context, head_hair = self.context, self._head_hair
+        if head_hair is not None:
+            head_hair.draw_solid(quality, seen_from, geometry.head)
             self._begin(targets)
         self.upload_wrinkles(geometry)
-        if detail.fine:
+        if quality_named(quality).fine:
             self._fields.update_lips(geometry)
         self._programs.set(self._mouth.opening(geometry))
         self._skin(quality, pixels_a_metre(seen_from, targets.size)).draw(wrinkled=self._wrinkled)
         self._begin(targets)
-        if self._head_hair is not None:
-            self._head_hair.draw_inside()
+        if head_hair is not None:
+            head_hair.draw_inside()
         self._draw_solids(geometry)
-        context.enable_only(moderngl.DEPTH_TEST | moderngl.BLEND)
-        context.blend_func = (
-            moderngl.SRC_ALPHA,
-            moderngl.ONE_MINUS_SRC_ALPHA,
-            moderngl.ONE,
-            moderngl.ONE_MINUS_SRC_ALPHA,
-        )
+        context.enable_only(context.DEPTH_TEST | context.BLEND)
+        context.blend_func = context.SRC_ALPHA, context.ONE_MINUS_SRC_ALPHA, context.ONE, context.ONE_MINUS_SRC_ALPHA
         for hairs in self._hairs:
             hairs.draw()
-        if self._head_hair is not None:
-            self._head_hair.draw_soft(quality, targets.scene)
-        context.enable_only(moderngl.NOTHING)
-        if targets.samples:
-            finish(context)
-            context.copy_framebuffer(targets.picture, targets.scene)
+        if head_hair is not None:
+            head_hair.draw_soft(quality, targets.scene)
+
+    def _draw_bone(self, geometry: FaceGeometry, targets: Targets, bone: Bone) -> None:
+        self._bones.draw(geometry, bone)
+        self.context.enable(self.context.CULL_FACE)
+        self._shirt.draw(np.eye(4, dtype=np.float32))
+        for eye in self._eyes:
+            eye.draw(geometry)
+        self._bones.draw_film(self.context, targets.scene)
+
+    @cached_property
+    def _bones(self) -> BoneView:
+        return BoneView(self._ownership.maker, self._programs, self.model)
 
     @cached_property
     def _pores(self) -> Any:

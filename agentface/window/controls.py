@@ -15,6 +15,7 @@ from agentface.view.gl.quality import QUALITIES
 from agentface.window.capture import Capture
 from agentface.window.history import History, Values
 from agentface.window.menu import PRESETS
+from agentface.window.skull import SkullControls
 
 if TYPE_CHECKING:
     from agentface.face import Face
@@ -32,7 +33,7 @@ ANGLES = tuple(known.name for known in PARAMETERS if known.unit == "rad")
 
 
 class Controls:
-    """The face's emotions, muscles and angles, with undo; the camera; what is shown.
+    """The face's emotions, muscles and angles, with undo; its skull; the camera; what is shown.
 
     Values are named: an emotion or a muscle with its side in 0..1, an angle such as ``gaze_yaw`` in degrees. A
     muscle of value None is not held: it moves with the emotion.
@@ -41,6 +42,8 @@ class Controls:
     def __init__(self, face: Face, capture: Capture | None = None) -> None:
         self.face, self.capture = face, capture
         self.history = History()
+        self.skull = SkullControls.of(face)
+        """None for a face that is not of tissue."""
         self.camera: Camera = named_view(face.model, "front")
         self.quality = "fast"
         self.apart: set[str] = set()

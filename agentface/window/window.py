@@ -19,6 +19,7 @@ from agentface.live.loop import Frame, Source
 from agentface.view.gl.context import finish
 from agentface.view.gl.quality import QUALITIES, suited_quality
 from agentface.view.gl.targets import Targets
+from agentface.view.parts.bone import Bone
 from agentface.view.renderer import Renderer
 from agentface.window.capture import Capture
 from agentface.window.controls import Controls
@@ -150,6 +151,7 @@ class Window:
 
     def _frame(self, renderer: Renderer, screen: Any, loop: Background, start: float, since: float) -> None:
         glfw = self.glfw
+        self._exchange_face()
         frame = loop.frame(_IDLE_FRAME_S)
         stepped, pace = self.clock.now(), _IDLE_FRAME_S
         if frame is not None and self._changes(frame, start):
@@ -168,12 +170,27 @@ class Window:
         else:
             glfw.poll_events()
 
+    def _exchange_face(self) -> None:
+        skull = self.controls.skull
+        if skull is not None and skull.preparing:
+            with self._held:
+                if skull.update():
+                    self._awake_until = self.clock.now() + _AWAKE_S
+
+    def _bone(self) -> Bone | None:
+        skull = self.controls.skull
+        if skull is None or not skull.shown:
+            return None
+        with self._held:
+            return skull.bone()
+
     def _changes(self, frame: Frame, now: float) -> bool:
         """Whether this frame looks unlike the one that is shown: a still face costs no drawing."""
         controls, pixels = self.controls, self.glfw.get_framebuffer_size(self.handle)
         if min(pixels) < 1:  # minimised
             return False
-        shown = (pixels, controls.camera, controls.quality, controls.panelled, controls.helping, frame.pose)
+        bone = controls.skull and (controls.skull.shown, controls.skull.table)
+        shown = (pixels, controls.camera, controls.quality, controls.panelled, controls.helping, bone, frame.pose)
         capture = controls.capture
         busy = capture is not None and (capture.picture_wanted or capture.film_wanted or capture.filmed_s is not None)
         typing = self._interface is not None and self._interface.typing
@@ -188,20 +205,20 @@ class Window:
         # the framebuffer counts pixels, which high-density displays have more of than points
         beside = round(self._panel_width() * pixels[0] / max(points[0], 1))
         size = max(pixels[0] - beside, 1), pixels[1]
-        quality = self.controls.quality
+        quality, bone = self.controls.quality, self._bone()
         samples = QUALITIES[quality].samples
         if self._targets is None or (self._targets.size, self._targets.wanted) != (size, samples):
             if self._targets is not None:
                 self._targets.release()
             self._targets = Targets.make(renderer.context, size, samples)
         screen.viewport = (0, 0, *size)
-        renderer.draw(frame.geometry, self._targets, self.controls.camera, quality, onto=screen)
+        renderer.draw(frame.geometry, self._targets, self.controls.camera, quality, onto=screen, bone=bone)
         if self.controls.capture is not None:
 
             def picture(wanted: tuple[int, int]) -> Bytes:
                 if wanted[0] <= size[0] < wanted[0] + 2 and wanted[1] <= size[1] < wanted[1] + 2:
                     return _read(screen, wanted)
-                return renderer.render(frame.geometry, wanted, self.controls.camera, quality)
+                return renderer.render(frame.geometry, wanted, self.controls.camera, quality, bone=bone)
 
             self.controls.capture.frame(now, size, picture)
         if self._panel is not None:

@@ -13,8 +13,8 @@ import numpy as np
 
 from agentface.conventions import Doubles
 
-_SAME = 1e-4
-"""Damping this near to critical is taken as beside it: the formula for it alone is another."""
+_SLOWEST = 1e-9
+"""rad/s: critical damping swings as slowly as that, which is the same."""
 
 
 class Oscillators(NamedTuple):
@@ -30,12 +30,12 @@ class Oscillators(NamedTuple):
         """
         if dt <= 0.0:
             return place, speed
-        ratio = np.where(np.abs(self.ratio - 1.0) < _SAME, 1.0 - _SAME, self.ratio)
+        ratio = self.ratio
         slope = (end - start) / dt
         lag = 2.0 * ratio / self.frequency * slope
         off, rate = place - start + lag, speed - slope
         decay = ratio * self.frequency
-        swing = self.frequency * np.sqrt(np.abs(ratio**2 - 1.0))
+        swing = np.maximum(self.frequency * np.sqrt(np.abs(ratio**2 - 1.0)), _SLOWEST)
         fades, angle = np.exp(-decay * dt), np.minimum(swing * dt, 700.0)
         under = ratio < 1.0
         even = np.where(under, np.cos(angle), np.cosh(angle))

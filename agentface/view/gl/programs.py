@@ -30,6 +30,8 @@ _SHADERS = {
     "background": ("screen", "background"),
     "copy": ("screen", "copy"),
 }
+_SELDOM = {"bone": ("bone", "bone"), "film": ("film", "film")}
+"""Those that few renderers draw with: compiled when one is first asked for."""
 
 
 class Programs:
@@ -40,6 +42,7 @@ class Programs:
 
     def __init__(self, context: Any, *, textured: bool = False) -> None:
         self._context = context
+        self._look: Look | None = None
         self._programs = {name: self._compile(*shaders) for name, shaders in _SHADERS.items()}
         self.depth = self._compile("depth", None)
         for quality in QUALITIES.values():
@@ -52,6 +55,10 @@ class Programs:
             )
 
     def __getitem__(self, name: str) -> Any:
+        if name in _SELDOM and name not in self._programs:
+            self._programs[name] = self._compile(*_SELDOM[name])
+            if self._look is not None:
+                self.wear(self._look)
         return self._programs[name]
 
     def skins(self, skin: str) -> tuple[Any, Any]:
@@ -67,6 +74,7 @@ class Programs:
 
     def wear(self, look: Look) -> None:
         """Set the colours of ``look``."""
+        self._look = look
         self.set(
             {
                 "skin_tone": look.skin.tone,

@@ -13,11 +13,13 @@ from agentface.window.panel import sections
 from agentface.window.panel.interface import Interface
 from agentface.window.panel.muscles import muscles
 from agentface.window.panel.rules import Rules
+from agentface.window.panel.skull import skull
 from agentface.window.panel.widgets import ACCENT, named
 from agentface.window.times import Times
 
 WIDTH_EMS = 22.0
 _LARGEST_SHARE = 0.6
+_BEFORE_RULES = 5
 _FIXED = (
     imgui.WindowFlags_.no_title_bar
     | imgui.WindowFlags_.no_resize
@@ -32,7 +34,7 @@ class Panel:
 
     def __init__(self, controls: Controls, interface: Interface, times: Times) -> None:
         self._controls, self._interface = controls, interface
-        draw: tuple[tuple[str, Callable[[], None], bool], ...] = (
+        draw: list[tuple[str, Callable[[], None], bool]] = [
             ("Emotions", partial(sections.emotions, controls), True),
             ("Presets", partial(sections.presets, controls), True),
             ("View", partial(sections.view, controls), True),
@@ -40,7 +42,9 @@ class Panel:
             ("Muscles", partial(muscles, controls), False),
             ("Rules that fired", partial(Rules().draw, controls), False),
             ("Frame time", partial(sections.frame_time, times), False),
-        )
+        ]
+        if controls.skull is not None:
+            draw.insert(_BEFORE_RULES, ("Skull", partial(skull, controls.skull), False))
         self._sections = draw
         self._help_size = (0.0, 0.0)
 
