@@ -12,10 +12,11 @@ from agentface.commands.options import face_options, json_option, write_json
 
 @click.command()
 @click.argument("name", required=False)
+@click.option("--volume", is_flag=True, help="With tissue: what each form of the volume force keeps, instead.")
 @json_option
 @face_options
-def bench(*, name: str | None, json_file: str | None, face: str, deformer: str) -> None:
-    """Run one benchmark, or all: deform, fuzzy, papers, frame, crowd, render, start, texture.
+def bench(*, name: str | None, volume: bool, json_file: str | None, face: str, deformer: str) -> None:
+    """Run one benchmark, or all: deform, fuzzy, papers, frame, crowd, render, start, tissue, texture.
 
     Of all of them, those that draw are left out, and said to be, on a machine without OpenGL.
     """
@@ -28,6 +29,10 @@ def bench(*, name: str | None, json_file: str | None, face: str, deformer: str) 
     if name is not None and name not in BENCHES:
         raise UnknownNameError("benchmark", name, tuple(BENCHES))
     face_folder(face)
+    if volume:
+        if name != "tissue":
+            raise click.UsageError("--volume goes with agentface bench tissue")
+        name = "tissue_volume"
     figures = (
         _measured(name, face, deformer)
         if name is not None
@@ -41,9 +46,9 @@ def bench(*, name: str | None, json_file: str | None, face: str, deformer: str) 
 
 
 def _measured(name: str, face: str, deformer: str) -> dict[str, Any]:
-    from agentface.studies.bench import BENCHES, run
+    from agentface.studies.bench import BENCHES, PARTS, run
 
-    click.echo(f"measuring {BENCHES[name]} …", err=True)
+    click.echo(f"measuring {(BENCHES | PARTS)[name]} …", err=True)
     return run(name, face, deformer)
 
 
@@ -57,7 +62,8 @@ def _if_it_can(name: str, face: str, deformer: str) -> dict[str, Any]:
 
 
 def _flat(figures: dict[str, Any], prefix: str = "") -> Iterator[tuple[str, Any]]:
-    for key, value in figures.items():
+    for key, told in figures.items():
+        value = {str(place): item for place, item in enumerate(told)} if isinstance(told, list) else told
         if isinstance(value, dict):
             yield from _flat(value, f"{prefix}{key}.")
         else:

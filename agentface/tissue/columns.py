@@ -101,7 +101,7 @@ def pack(lattice: Lattice, groups: list[Indices]) -> Columns:
         gap=np.where(real, lattice.gap[chosen], 1e3).astype(np.float32),
         firmness=np.where(real[:, None], _firmness(lattice)[:, chosen].transpose(1, 0, 2), 0.0).astype(np.float32),
         rest=packed(vertex, lattice.rest, padding=-1.0),
-        law=_law(lattice),
+        law=law_of(lattice),
         steady=packed(moving, bending_at_rest(lattice)),
         colours=colours,
     )
@@ -225,7 +225,8 @@ def _firmness(lattice: Lattice) -> Doubles:
     return result
 
 
-def _law(lattice: Lattice) -> Floats:
+def law_of(lattice: Lattice) -> Floats:
+    """:attr:`Columns.law`."""
     table = lattice.file
     one, two = {0: (0.0, 0.0), 1: (1.0, 0.0), 2: (2.0, 1.0)}[table.springs.alpha]
     forms = ("energy", "printed", "signed", "epidermis")

@@ -28,8 +28,8 @@ class TissueDeformer:
     """The physical face of Zhang, Prakash and Sung: it has mass, and each pose has one equilibrium.
 
     Tissue takes the place of the geometric face's vector muscles, of the volumes that they gather and of limits;
-    orbicularis oris, lids, jaw, lips, contact, wrinkles and neck are the same. It is solved with the jaw closed; the jaw
-    carries it along.
+    orbicularis oris, lids, jaw, lips, contact, wrinkles and neck are the same. It is solved with the jaw closed, which
+    then carries it along.
 
     Args:
         model: the face; its folder must have a ``tissue.yaml``.

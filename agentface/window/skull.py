@@ -15,8 +15,9 @@ from agentface.io.files import write_file
 from agentface.tissue.deformer import TissueDeformer
 from agentface.tissue.layers import HYPODERMIS
 from agentface.tissue.nudge import Nearness, as_fitted, nearness, nudged, rewritten
+from agentface.tissue.reading import read_tissue
 from agentface.tissue.skull import moved
-from agentface.tissue.tissue_file import TISSUE_FILE, SkullTable, read_tissue
+from agentface.tissue.tissue_file import TISSUE_FILE, SkullTable
 from agentface.view.parts.bone import Bone
 
 if TYPE_CHECKING:

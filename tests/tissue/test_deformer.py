@@ -61,7 +61,9 @@ def test_frame_rates_agree_at_common_times(deformer: TissueDeformer, smile: Face
         shown = []
         for frame in range(1, rate + 1):
             time = frame / rate
-            target = FacePose(smile.array * np.float32(np.clip(time / 0.3, 0.0, 1.0) - np.clip((time - 0.6) / 0.2, 0, 1)))
+            target = FacePose(
+                smile.array * np.float32(np.clip(time / 0.3, 0.0, 1.0) - np.clip((time - 0.6) / 0.2, 0, 1))
+            )
             vertices = deformer.step(target, 1 / rate).vertices
             if frame % (rate // 6) == 0:
                 shown.append(vertices.copy())

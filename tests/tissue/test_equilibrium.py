@@ -41,9 +41,7 @@ def test_all_six_are_the_same_from_rest_and_from_each_other(
             assert apart(tissue, there, found[name]) < SAME_MM, name
 
 
-def test_they_are_in_equilibrium(
-    tissue: TissueTables, emotions: dict[str, Doubles], found: dict[str, Floats]
-) -> None:
+def test_they_are_in_equilibrium(tissue: TissueTables, emotions: dict[str, Doubles], found: dict[str, Floats]) -> None:
     lattice = tissue.lattice
     for name, contractions in emotions.items():
         load = np.zeros_like(lattice.rest)
@@ -117,5 +115,3 @@ def test_a_thousand_random_contractions_invert_nothing(tissue: TissueTables) -> 
 def normals_of(points: Doubles, triangles: np.ndarray) -> Doubles:
     a, b, c = (points[triangles[:, corner]] for corner in range(3))
     return np.cross(b - a, c - a)
-
-

@@ -116,9 +116,7 @@ def test_breadth_first_distances_are_scipys(tissue: TissueTables) -> None:
     assert (np.where(np.isinf(told), -1, told) == found).all()
 
 
-def test_the_adaptive_scheme_groups_anew_for_other_muscles(
-    tissue: TissueTables, emotions: dict[str, Doubles]
-) -> None:
+def test_the_adaptive_scheme_groups_anew_for_other_muscles(tissue: TissueTables, emotions: dict[str, Doubles]) -> None:
     solver = Adaptive(tissue)
     one = solver.group(emotions["surprise"])
     assert solver.group(0.5 * emotions["surprise"]) is one

@@ -31,7 +31,9 @@ def noted(name):
         return result
     setattr(imgui, name, call)
 
-for name in ("slider_float", "button", "small_button", "collapsing_header", "tree_node_ex", "invisible_button", "checkbox"):
+for name in (
+    "slider_float", "button", "small_button", "collapsing_header", "tree_node_ex", "invisible_button", "checkbox",
+):
     noted(name)
 
 def xdo(*words):

@@ -23,6 +23,8 @@ BENCHES: dict[str, str] = {
     "texture": "a picture worn as skin: how finely it lies, how emotions strain it, what drawing it costs",
 }
 """The benchmarks and what they compare; each is a module of this package with ``run() -> dict``."""
+PARTS: dict[str, str] = {"tissue_volume": "the second paper's volume force, its forms and ours, at several strengths"}
+"""What is measured when it is asked for alone."""
 
 
 def run(name: str, face: str | Path = DEFAULT_FACE, deformer: str = DEFAULT_DEFORMER) -> dict[str, Any]:
@@ -31,7 +33,7 @@ def run(name: str, face: str | Path = DEFAULT_FACE, deformer: str = DEFAULT_DEFO
     """
     from agentface.head.model import load_model
 
-    if name not in BENCHES:
+    if name not in BENCHES | PARTS:
         raise UnknownNameError("benchmark", name, tuple(BENCHES))
     bench = import_module(f"agentface.studies.bench.{name}").run
     parameters = signature(bench).parameters

@@ -187,7 +187,7 @@ def _steps_a_frame(tables: TissueTables, case: Ramp) -> tuple[int, float]:
 
 
 def _to_equal_error(solver: SemiImplicit | Adaptive, tables: TissueTables, case: Ramp) -> int | None:
-    """Steps from rest, the load raised over the first 60, until no node is off by more than ``EQUAL_ERROR``; or None."""
+    """Steps from rest, the load raised over the first 60, until all nodes are within ``EQUAL_ERROR``; None: never."""
     dt = stable_step(tables)
     if isinstance(solver, Adaptive):
         solver.group(case.contractions)

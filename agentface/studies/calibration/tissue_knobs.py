@@ -54,12 +54,12 @@ def _of_cone(row: LinearRow) -> list[Knob]:
 
 
 def _of_sphincter(row: SphincterRow) -> list[Knob]:
-    _, y, z = row.centre.offset
+    (_, y, z), (wide, high) = row.centre.offset, row.radii
     return [
-        Knob(("centre", "offset", 1), y - 0.38, y + 0.38),
+        Knob(("centre", "offset", 1), y - 0.25, y + 0.25),
         Knob(("centre", "offset", 2), z - 0.23, z + 0.26),
-        Knob(("radii", 0), 0.34, 1.04),
-        Knob(("radii", 1), 0.26, 0.95),
+        Knob(("radii", 0), 0.75 * wide, 1.5 * wide),
+        Knob(("radii", 1), 0.75 * high, 1.5 * high),
         Knob(("crest",), 0.3, 0.9),
         Knob(("upper",), 0.0, 1.0),
         Knob(("outward",), -0.5, 1.0),
