@@ -1,8 +1,10 @@
 from contextlib import suppress
+from typing import Annotated, Literal
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from pydantic import Field
 
 from agentface.config import Document, Table, load
 from agentface.errors import DataError
@@ -85,3 +87,55 @@ def test_never_raises_anything_else(tmp_path_factory, text):
     path.write_text(text, encoding="utf-8", errors="surrogatepass")
     with suppress(DataError):
         load(path, Row)
+
+
+class Round(Table):
+    kind: Literal["round"]
+    radius: Annotated[float, Field(gt=0)]
+
+
+class Square(Table):
+    kind: Literal["square"]
+    sides: list[float]
+
+
+class Shapes(Table):
+    shapes: dict[str, Annotated[Round | Square, Field(discriminator="kind")]]
+
+
+SHAPES = """\
+shapes:
+  a:
+    kind: round
+    radius: -1
+  b:
+    kind: square
+    sides:
+      - 1
+      - two
+  c:
+    kind: triangle
+  d:
+    sides: [1]
+  e:
+    kind: square
+  f: 3
+  g:
+    kind: round
+    radius: 1
+    square: 2
+"""
+
+
+def test_what_is_wrong_in_one_of_several_kinds_of_table_is_told_where_it_is(tmp_path):
+    with pytest.raises(DataError) as caught:
+        load(write(tmp_path, SHAPES), Shapes)
+    assert [(fault.line, fault.where, fault.expected, fault.got) for fault in caught.value.faults] == [
+        (4, "shapes.a.radius", "greater than 0", "-1"),
+        (9, "shapes.b.sides.1", "a valid number", "'two'"),
+        (11, "shapes.c.kind", "one of round, square", "'triangle'"),
+        (12, "shapes.d.kind", "this key", "nothing"),
+        (14, "shapes.e.sides", "this key", "nothing"),
+        (16, "shapes.f", "a table of keys and values", "3"),
+        (20, "shapes.g.square", "no such key", "2"),
+    ]

@@ -23,6 +23,9 @@ from agentface.tissue.tissue_file import NAMES, TISSUE_FILE, LinearRow, MuscleRo
 
 _TINY = 1e-9
 _SHORTEST_M = 1e-5
+"""Between the ends of a muscle: a shorter one has no direction."""
+_LEAST = 1e-3
+"""Of its strength: what a muscle must pull with somewhere."""
 
 
 def nodal_forces(model: HeadModel, lattice: Lattice, file: TissueFile | None = None) -> Doubles:
@@ -43,11 +46,11 @@ def _force(model: HeadModel, lattice: Lattice, rows: dict[str, MuscleRow], name:
         if not np.linalg.norm(insertion - origin) > _SHORTEST_M:
             where = Place(TISSUE_FILE, (*place, "insertion"))
             raise InvalidValueError(where, "a point apart from the origin", insertion.round(6).tolist())
-    force = row.strength * unit_field(model, lattice, row, side)
-    if not force.any():
+    field = unit_field(model, lattice, row, side)
+    if not np.abs(field).max() > _LEAST:
         hint = "its zone must reach skin of its regions"
         raise InvalidValueError(Place(TISSUE_FILE, place), "a muscle that pulls on some of the tissue", "none", hint)
-    return force
+    return row.strength * field
 
 
 def unit_field(model: HeadModel, lattice: Lattice, row: MuscleRow, side: str) -> Doubles:
@@ -61,8 +64,7 @@ def unit_field(model: HeadModel, lattice: Lattice, row: MuscleRow, side: str) ->
     origin, insertion = (1e3 * anchor_point(anchor, side, model.landmarks) for anchor in (row.origin, row.insertion))
     if isinstance(row, SheetRow):
         return reach[:, None] * _sheet(row, points, origin, insertion, unit)
-    pull = _linear(row, points, origin, insertion, unit)
-    return reach[:, None] * pull
+    return reach[:, None] * _linear(row, points, origin, insertion, unit)
 
 
 def _linear(row: LinearRow, points: Doubles, origin: Doubles, insertion: Doubles, unit: float) -> Doubles:

@@ -11,7 +11,7 @@ from agentface.head.landmarks import LANDMARKS, PAIRED_LANDMARKS
 from agentface.head.regions import HALF_REGIONS, SUB_REGIONS
 from agentface.parameters import MUSCLES
 from agentface.resources import data_folder
-from agentface.tissue.tissue_file import LARGEST_RHO, TISSUE_FILE, TISSUE_MUSCLES, TissueFile
+from agentface.tissue.tissue_file import LARGEST_RHO, SHALLOWEST_MM, TISSUE_FILE, TISSUE_MUSCLES, TissueFile
 
 _Where = tuple[str, ...]
 _Known = tuple[str, ...]
@@ -78,7 +78,7 @@ def _check_thickness(document: Document, lattice: dict[str, Any], depths: dict[s
     least, most = map(_number, bounds)
     if least is not None and most is not None and least >= most:
         document.fault(("lattice", "thickness_mm"), "the least thickness, then a larger one", f"{least:g}, {most:g}")
-    known = {name: depth for name, value in depths.items() if (depth := _number(value)) is not None}
+    known = {name: depth for name, value in depths.items() if (depth := _number(value) or 0.0) >= SHALLOWEST_MM}
     shallow = min(known, key=lambda name: known[name], default=None)
     if least is not None and shallow is not None and least > known[shallow]:
         told = f"at most {known[shallow]:g}, the depth at {shallow}"

@@ -23,6 +23,8 @@ TISSUE_MUSCLES = (
     "risorius", "depressor_anguli", "depressor_labii", "mentalis", "orbicularis_oculi", "orbicularis_oris",
 )  # fmt: skip
 """Without side: ten pairs of linear muscles and sheets, and the three sphincters."""
+SHALLOWEST_MM = 0.5
+"""The least depth that soft tissue has anywhere."""
 UNPAIRED = "orbicularis_oris"
 NAMES: tuple[str, ...] = tuple(
     full for name in TISSUE_MUSCLES for full in ([name] if name == UNPAIRED else [f"{name}_{side}" for side in SIDES])
@@ -170,7 +172,7 @@ MuscleRow = Annotated[LinearRow | SheetRow | SphincterRow, Field(discriminator="
 class TissueFile(Table):
     """``tissue.yaml``."""
 
-    depth_mm: Annotated[dict[str, Annotated[float, Field(ge=0.5, le=40)]], Field(min_length=1)]
+    depth_mm: Annotated[dict[str, Annotated[float, Field(ge=SHALLOWEST_MM, le=40)]], Field(min_length=1)]
     lattice: LatticeTable
     springs: SpringsTable
     volume: VolumeTable

@@ -15,7 +15,7 @@ from agentface.conventions import SIDES, Doubles
 from agentface.errors import InvalidValueError, Place
 from agentface.head.model import HeadModel
 from agentface.studies.calibration.action_units import ActionUnit, load_action_units
-from agentface.studies.calibration.tissue_knobs import knobs, turned, values_of
+from agentface.studies.calibration.tissue_knobs import EXACT, knobs, turned, values_of
 from agentface.studies.calibration.tissue_loss import ShapeLoss
 from agentface.tissue.columns import Columns, coloured, pack, unpacked
 from agentface.tissue.lattice import Lattice, build_lattice
@@ -29,7 +29,7 @@ Progress = Callable[[str], None]
 _HOME = 0.05
 """The pull to the anatomist's values."""
 _ROUNDS = (30, 15, 15)
-"""Steps of each search; after each the background is made anew."""
+"""Steps of each search; between two of them the background is made anew."""
 _LOG_STRENGTH = -5.0, 4.6
 _STEP = 2e-3
 """Of a knob's range: for the change of a muscle's forces with it."""
@@ -138,11 +138,12 @@ class MuscleFit:
         if self._others.any():
             self._background = self._fitter.equilibrium(self._others)
         bounds = [(0.0, 1.0)] * len(self._knobs) + [_LOG_STRENGTH]
-        for most in rounds:
+        for turn, most in enumerate(rounds):
+            if turn:
+                force = self._force(place)
+                self._background = self._fitter.equilibrium(force + self._others) - self._fitter.response(force)
             found = minimize(self.loss, place, jac=True, method="L-BFGS-B", bounds=bounds, options={"maxiter": most})
             place, loss = found.x, float(found.fun)
-            force = self._force(place)
-            self._background = self._fitter.equilibrium(force + self._others) - self._fitter.response(force)
         return self._at(place, _DIGITS), loss
 
     def loss(self, place: Doubles) -> tuple[float, Doubles]:
@@ -166,11 +167,9 @@ class MuscleFit:
         gradient[-1] = (force * adjoint).sum()
         return value + float((away**2).sum()), gradient
 
-    def _at(self, place: Doubles, digits: int | None = None) -> MuscleRow:
-        values, strength = self._low + place[:-1] * self._width, float(np.exp(place[-1]))
-        if digits is None:
-            return turned(self._row, self._knobs, values, strength)
-        return turned(self._row, self._knobs, values, strength, digits)
+    def _at(self, place: Doubles, digits: int = EXACT) -> MuscleRow:
+        values = self._low + place[:-1] * self._width
+        return turned(self._row, self._knobs, values, float(np.exp(place[-1])), digits)
 
     def _force(self, place: Doubles) -> Doubles:
         return self._fitter.force(self._name, self._at(place))

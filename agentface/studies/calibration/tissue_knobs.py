@@ -14,7 +14,8 @@ _BONE_END, _SKIN_END = 0.40, 0.25
 """How far the two ends may go from where the row has them, in eye separations."""
 _APART = 0.09
 """The least between ``fall_near``, ``fall_start`` and ``fall_finish``, in eye separations."""
-_EXACT = 12
+EXACT = 12
+"""Digits that change nothing."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,7 +72,7 @@ def values_of(row: MuscleRow, its_knobs: list[Knob]) -> Doubles:
     return np.array([_holder(content, knob)[knob.where[-1]] for knob in its_knobs])
 
 
-def turned(row: MuscleRow, its_knobs: list[Knob], values: Doubles, strength: float, digits: int = _EXACT) -> MuscleRow:
+def turned(row: MuscleRow, its_knobs: list[Knob], values: Doubles, strength: float, digits: int = EXACT) -> MuscleRow:
     """The row with its knobs at ``values (K,)`` and with another strength, rounded to ``digits`` after the point.
 
     The places where a cone begins, pulls most and ends are pushed apart where they are out of order.

@@ -1,0 +1,64 @@
+"""What only a table and a face together show is told with the place in the table."""
+
+from __future__ import annotations
+
+import dataclasses
+
+import numpy as np
+import pytest
+
+from agentface.errors import InvalidValueError, Place
+from agentface.head.muscles import Anchor
+from agentface.tissue import soundness
+from agentface.tissue.lattice import build_lattice
+from agentface.tissue.muscles import nodal_forces
+
+
+def with_row(lattice, name, **changes):
+    file = lattice.file
+    return file.model_copy(update={"muscles": file.muscles | {name: file.muscles[name].model_copy(update=changes)}})
+
+
+def test_a_muscle_of_no_length_is_told(model, lattice):
+    end = lattice.file.muscles["risorius"].insertion
+    with pytest.raises(InvalidValueError, match="a point apart from the origin") as caught:
+        nodal_forces(model, lattice, with_row(lattice, "risorius", origin=end))
+    assert caught.value.place == Place("tissue.yaml", ("muscles", "risorius", "insertion"))
+
+
+@pytest.mark.parametrize(
+    ("name", "changes"),
+    [
+        ("mentalis", {"regions": ["upper_eyelid"]}),
+        ("risorius", {"origin": Anchor(at="cheek", offset=[5.0, 5.0, 5.0])}),
+        ("orbicularis_oris", {"centre": Anchor(at="nasion", offset=[0.0, 5.0, 0.0])}),
+        ("frontalis_inner", {"half_width": 1e-6}),
+    ],
+)
+def test_a_muscle_that_pulls_on_nothing_is_told(model, lattice, name, changes):
+    """Its response would be 0, and the face's dynamics, which divide by it, no numbers at all."""
+    with pytest.raises(InvalidValueError, match="pulls on some of the tissue") as caught:
+        nodal_forces(model, lattice, with_row(lattice, name, **changes))
+    assert caught.value.place == Place("tissue.yaml", ("muscles", name))
+
+
+def test_degenerate_prisms_are_told_with_their_region(model, lattice, monkeypatch):
+    triangle = int(np.flatnonzero(model.regions.region_of[lattice.triangles[:, 0]] == 1)[0])
+    folded = dataclasses.replace(lattice, degenerate=np.array([triangle], np.int32))
+    monkeypatch.setattr(soundness, "build_lattice", lambda *_: folded)
+    with pytest.raises(InvalidValueError, match=r"no prism is degenerate.*lattice.regions.middle_face") as caught:
+        soundness.check_tissue(model)
+    assert caught.value.place == Place("tissue.yaml", ("lattice", "thickness"))
+
+
+@pytest.mark.slow
+def test_layers_that_would_be_inverted_are_left_out_and_counted(model, lattice):
+    """A fold that no thinning helps: one vertex of the cheek drawn up over its neighbours."""
+    vertex = int(((model.vertices - model.landmarks["cheek_l"]) ** 2).sum(axis=1).argmin())
+    vertices = model.vertices.copy()
+    vertices[vertex, 1] += 0.03
+    found = build_lattice(dataclasses.replace(model, vertices=vertices), lattice.file)
+    assert not len(lattice.degenerate)
+    assert len(found.degenerate)
+    assert len(found.prisms.corners) + len(found.degenerate) == len(lattice.prisms.corners)
+    assert (found.volumes > 0.0).all()
