@@ -40,7 +40,7 @@ _PARTS = {
     "levator_alaeque_nasi": 1.15,
     "levator_labii": 1.15,
     "zygomaticus_major": 1.15,
-    "depressor_anguli": 1.2,
+    "depressor_anguli": 1.17,
     "risorius": 1.05,
     "mentalis": 1.3,
     "orbicularis_oculi": 0.9,
