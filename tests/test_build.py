@@ -8,7 +8,7 @@ import pytest
 from click.testing import CliRunner
 
 from agentface.cli import cli
-from agentface.commands.build import borrowed
+from agentface.commands.build import _borrowed
 from agentface.head.model import load_model
 from agentface.resources import face_folder
 from agentface.tissue.reading import anatomy_file
@@ -60,13 +60,13 @@ def test_a_new_face_gets_the_lenders_tissue_or_the_anatomists(tmp_path):
         folder.mkdir()
     for name in ("tissue.yaml", "muscles.yaml"):
         (lender / name).write_text("")
-    assert borrowed("tissue.yaml", own, lender) == lender / "tissue.yaml"
+    assert _borrowed("tissue.yaml", own, lender) == lender / "tissue.yaml"
     (own / "tissue.yaml").write_text("")
-    assert borrowed("tissue.yaml", own, lender) == own / "tissue.yaml"
+    assert _borrowed("tissue.yaml", own, lender) == own / "tissue.yaml"
     for folder in (own, lender):
         (folder / "tissue.yaml").unlink()
-    assert borrowed("tissue.yaml", own, lender) == anatomy_file()
-    assert borrowed("muscles.yaml", own, lender) == lender / "muscles.yaml"
+    assert _borrowed("tissue.yaml", own, lender) == anatomy_file()
+    assert _borrowed("muscles.yaml", own, lender) == lender / "muscles.yaml"
 
 
 def test_a_name_that_is_taken_is_refused(tmp_path):

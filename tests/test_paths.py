@@ -23,6 +23,7 @@ from agentface.io.video import VideoWriter
 from agentface.mesh.glb import read_glb, write_glb
 from agentface.resources import face_folder, rules_file
 from agentface.studies.calibration.action_units import load_action_units
+from agentface.tissue.reading import anatomy_file, read_tissue, tissue_of
 from agentface.view.gl.context import read_source
 from tests.heads import head_model
 
@@ -57,6 +58,8 @@ READERS = [
     (load_blends, rules_file("blends.yaml")),
     (load_action_units, rules_file("action_units.yaml")),
     (Document, rules_file("emotions.yaml")),
+    (read_tissue, anatomy_file()),
+    (tissue_of, face_folder("amber")),
     (read_look, face_folder("amber") / "look.yaml"),
     (read_glb, face_folder("amber") / "head.glb"),
     (load_model, face_folder("onyx")),

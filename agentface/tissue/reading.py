@@ -27,9 +27,9 @@ def anatomy_file() -> Path:
     return data_folder("regions") / TISSUE_FILE
 
 
-def tissue_of(folder: Path) -> TissueFile:
+def tissue_of(folder: str | Path) -> TissueFile:
     """The table of a face's folder; raises DataError with all faults, or that there is none and how to make one."""
-    path = folder / TISSUE_FILE
+    path = Path(folder) / TISSUE_FILE
     if not path.is_file():
         hint = f"`agentface calibrate {folder} --deformer tissue` makes one; or copy {anatomy_file()}"
         raise DataError([Fault(path, None, "", "this file, for the tissue deformer", "none", hint)])
