@@ -8,8 +8,10 @@ import pytest
 from click.testing import CliRunner
 
 from agentface.cli import cli
+from agentface.commands.build import borrowed
 from agentface.head.model import load_model
 from agentface.resources import face_folder
+from agentface.tissue.reading import anatomy_file
 from tests.base_mesh import base_mesh
 
 
@@ -40,6 +42,7 @@ def test_a_recipe_becomes_a_face_that_its_name_finds(recipe, tmp_path):
     assert (model.name, model.folder) == ("sam", folder)
     assert 0.0005 < abs(model.vertices - onyx.vertices).max() < 0.02
     assert (folder / "muscles.yaml").read_bytes() == (face_folder("onyx") / "muscles.yaml").read_bytes()
+    assert (folder / "tissue.yaml").read_bytes() == (face_folder("onyx") / "tissue.yaml").read_bytes()
     assert (folder / "recipe.yaml").read_bytes() == recipe.read_bytes()
     assert "Where the face sam comes from" in (folder / "PROVENANCE.md").read_text()
     assert "sam: good" in call("check", "--face", "sam").stdout
@@ -49,6 +52,21 @@ def test_a_recipe_becomes_a_face_that_its_name_finds(recipe, tmp_path):
     call("build", folder / "recipe.yaml", "-o", folder)
     assert (folder / "head.glb").read_bytes() == glb
     assert (folder / "muscles.yaml").read_bytes() == (face_folder("amber") / "muscles.yaml").read_bytes(), "kept"
+
+
+def test_a_new_face_gets_the_lenders_tissue_or_the_anatomists(tmp_path):
+    own, lender = tmp_path / "own", tmp_path / "lender"
+    for folder in (own, lender):
+        folder.mkdir()
+    for name in ("tissue.yaml", "muscles.yaml"):
+        (lender / name).write_text("")
+    assert borrowed("tissue.yaml", own, lender) == lender / "tissue.yaml"
+    (own / "tissue.yaml").write_text("")
+    assert borrowed("tissue.yaml", own, lender) == own / "tissue.yaml"
+    for folder in (own, lender):
+        (folder / "tissue.yaml").unlink()
+    assert borrowed("tissue.yaml", own, lender) == anatomy_file()
+    assert borrowed("muscles.yaml", own, lender) == lender / "muscles.yaml"
 
 
 def test_a_name_that_is_taken_is_refused(tmp_path):

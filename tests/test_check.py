@@ -11,6 +11,7 @@ from agentface.cli import cli
 from agentface.errors import DataError
 from agentface.head.model import load_model
 from agentface.resources import face_folder
+from agentface.tissue.reading import anatomy_file
 
 SAME_END = ("wrinkles.yaml", r"offset: \[0.0, 0.91, 0.0\]", "offset: [0.0, 0.2, 0.0]")
 
@@ -18,6 +19,13 @@ SAME_END = ("wrinkles.yaml", r"offset: \[0.0, 0.91, 0.0\]", "offset: [0.0, 0.2, 
 @pytest.fixture
 def face(tmp_path):
     return shutil.copytree(face_folder("amber"), tmp_path / "mine")
+
+
+@pytest.fixture
+def untissued(face):
+    """A face whose tissue need not be built, which takes seconds."""
+    (face / "tissue.yaml").unlink()
+    return face
 
 
 def edit(face, name, old, new):
@@ -29,8 +37,8 @@ def edit(face, name, old, new):
     return found.groups(), text.count("\n", 0, found.start(len(found.groups()))) + 1
 
 
-def faults(place):
-    result = CliRunner().invoke(cli, ["check", str(place)])
+def faults(place, *options):
+    result = CliRunner().invoke(cli, ["check", str(place), *options])
     assert result.exit_code in (0, 1), result.output
     said = result.output.splitlines()
     assert (result.exit_code == 0) == said[0].endswith(": good")
@@ -86,15 +94,15 @@ def test_a_ring_too_few_is_told(face):
     assert any("lips.yaml:3: rings: expected at least 9 items" in row for row in faults(face))
 
 
-def test_rings_in_another_order_are_told_with_their_file(face):
-    text = (face / "lips.yaml").read_text()
+def test_rings_in_another_order_are_told_with_their_file(untissued):
+    text = (untissued / "lips.yaml").read_text()
     start = [match.start() for match in re.finditer("^- upper|^orbicularis", text, re.M)]
     rings = [text[i:j] for i, j in pairwise(start)]
     rings[2], rings[5] = rings[5], rings[2]
-    (face / "lips.yaml").write_text(text[: start[0]] + "".join(rings) + text[start[-1] :])
-    load_model(face)
-    (found,) = faults(face)
-    assert found.startswith(f"{face / 'lips.yaml'}")
+    (untissued / "lips.yaml").write_text(text[: start[0]] + "".join(rings) + text[start[-1] :])
+    load_model(untissued)
+    (found,) = faults(untissued)
+    assert found.startswith(f"{untissued / 'lips.yaml'}")
     assert "joined one to one" in found
 
 
@@ -122,6 +130,25 @@ NUMBERS = [
     ("wrinkles.yaml", r"facing: \[0.0, 0.0, 1.0\]", "facing: [0.0, 0.0, 1e-200]", "facing"),
     (*SAME_END, "trains.forehead_medial.end"),
 ]
+TISSUE = [
+    (r"epidermis: [\d.]+", "epidermis: -1.0", "springs.layers.epidermis"),
+    (r"thickness_mm: \[0.5, 6.0\]", "thickness_mm: [6.0, 0.5]", "lattice.thickness_mm"),
+    (r"rho: [\d.]+", "rho: 300.0", "volume.rho"),
+    (r"regions: \[upper_face\]", "regions: [upper_farce]", "muscles.frontalis_inner.regions.0"),
+    (r"moved_by: \{mentalis", "moved_by: {mental", "muscles.mentalis.moved_by.mental"),
+]
+UNPLACED = [
+    (
+        r"(  mentalis:.*?insertion: )\{[^}]*\}",
+        r"\1{at: lower_lip_middle, offset: ORIGIN}",
+        "muscles.mentalis.insertion: expected a point apart from the origin",
+    ),
+    (
+        r"(  mentalis:.*?regions: )\[lower_face\]",
+        r"\1[upper_eyelid]",
+        "muscles.mentalis: expected a muscle that pulls on some of the tissue",
+    ),
+]
 
 
 @pytest.mark.parametrize(("name", "old", "new", "where"), NUMBERS)
@@ -133,29 +160,66 @@ def test_impossible_numbers_are_told_by_line(face, name, old, new, where):
         assert "Anchor(" not in row
 
 
-def test_a_train_of_no_length_between_landmarks_is_told_by_line(face):
+@pytest.mark.parametrize(("old", "new", "where"), TISSUE)
+def test_faults_of_the_tissue_are_told_by_line(face, old, new, where):
+    _, line = edit(face, "tissue.yaml", old, new)
+    for found in (faults(face), faults(face / "tissue.yaml")):
+        assert any(row.startswith(f"{face / 'tissue.yaml'}:{line}: {where}: expected ") for row in found), found
+    load_model(face)  # it is no matter of other deformers
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("old", "new", "told"), UNPLACED)
+def test_what_cannot_be_built_of_the_tissue_is_told_by_line(face, old, new, told):
+    text = (face / "tissue.yaml").read_text()
+    origin = re.search(r"  mentalis:.*?origin: \{at: lower_lip_middle, offset: (\[.*?\])\}", text, re.DOTALL)[1]
+    edit(face, "tissue.yaml", old, new.replace("ORIGIN", origin))
+    (found,) = faults(face)
+    assert re.match(rf"{face / 'tissue.yaml'}:\d+: {re.escape(told)}, got ", found)
+    line = int(found.removeprefix(f"{face / 'tissue.yaml'}:").partition(":")[0])
+    key = told.partition(": ")[0].rpartition(".")[2]
+    assert (face / "tissue.yaml").read_text().splitlines()[line - 1].strip().startswith(f"{key}:")
+
+
+def test_a_face_needs_tissue_only_for_the_deformers_that_move_it(untissued):
+    assert not faults(untissued)
+    for deformer in ("tissue", "tissue-semi-implicit", "tissue-adaptive"):
+        (found,) = faults(untissued, "--deformer", deformer)
+        assert found.startswith(f"{untissued / 'tissue.yaml'}: expected this file, for the tissue deformer, got none")
+
+
+def test_the_anatomists_tissue_is_checked_and_makes_no_face_of_its_folder(tmp_path):
+    path = shutil.copy(anatomy_file(), tmp_path)
+    assert not faults(path)
+    (found,) = faults(tmp_path)
+    assert "expected a folder with rules or a face, got neither" in found
+
+
+def test_a_train_of_no_length_between_landmarks_is_told_by_line(untissued):
     """Only the placed landmarks show it: the way from one to the other goes along ``facing``."""
-    model = load_model(face)
+    model = load_model(untissued)
     way = model.landmarks["subnasale"] - model.landmarks["nose_tip"]
-    text = (face / "wrinkles.yaml").read_text()
+    text = (untissued / "wrinkles.yaml").read_text()
     row = text[text.index("  forehead_medial:") : text.index("  forehead_middle:")]
     new = re.sub(r"facing: .*", f"facing: {(10 * way / abs(way).max()).tolist()}", row)
     new = re.sub(r"start:\n +at: glabella\n +offset: .*", "start:\n      at: nose_tip", new)
     new = re.sub(r"end:\n +at: glabella\n +offset: .*", "end:\n      at: subnasale", new)
-    (face / "wrinkles.yaml").write_text(text.replace(row, new))
-    (found,) = faults(face)
+    (untissued / "wrinkles.yaml").write_text(text.replace(row, new))
+    (found,) = faults(untissued)
     line = text.replace(row, new).count("\n", 0, text.replace(row, new).index("at: subnasale"))
-    assert found.startswith(f"{face / 'wrinkles.yaml'}:{line}: trains.forehead_medial.end: expected a point beside")
+    assert found.startswith(
+        f"{untissued / 'wrinkles.yaml'}:{line}: trains.forehead_medial.end: expected a point beside"
+    )
 
 
-def test_a_muscle_of_no_length_is_told_by_line(face):
-    text = (face / "muscles.yaml").read_text()
+def test_a_muscle_of_no_length_is_told_by_line(untissued):
+    text = (untissued / "muscles.yaml").read_text()
     row = text[text.index("  risorius:") :]
     at, offset = re.search(r"origin:\n\s+at: (.*)\n\s+offset: (.*)\n", row).groups()
     same = re.sub(r"(insertion:\n\s+at: ).*(\n\s+offset: ).*", rf"\g<1>{at}\g<2>{offset}", row, count=1)
-    (face / "muscles.yaml").write_text(text.replace(row, same))
-    (found,) = faults(face)
-    assert re.match(rf"{face / 'muscles.yaml'}:\d+: muscles.risorius.insertion: expected a point apart", found)
+    (untissued / "muscles.yaml").write_text(text.replace(row, same))
+    (found,) = faults(untissued)
+    assert re.match(rf"{untissued / 'muscles.yaml'}:\d+: muscles.risorius.insertion: expected a point apart", found)
 
 
 def test_all_faults_of_a_file_are_told_at_once(face):
@@ -204,7 +268,7 @@ RUBBISH = [
 ]
 
 
-@pytest.mark.parametrize("name", ["regions.yaml", "lips.yaml", "eyelids.yaml", "wrinkles.yaml"])
+@pytest.mark.parametrize("name", ["regions.yaml", "lips.yaml", "eyelids.yaml", "wrinkles.yaml", "tissue.yaml"])
 @pytest.mark.parametrize("content", RUBBISH)
 def test_rubbish_is_faults_and_no_error(face, name, content):
     (face / name).write_text(content)

@@ -86,6 +86,7 @@ def test_wheel_holds_the_package_and_its_data_and_nothing_else(wheel: Path):
     }
     assert {name for name in names if name.startswith("agentface/_data/")} == shipped
     assert {"agentface/_data/regions/amber/head.glb", "agentface/_data/rules/emotions.yaml"} <= shipped
+    assert {f"agentface/_data/regions/{place}tissue.yaml" for place in ("", "amber/", "onyx/")} <= shipped
     assert any(name.endswith(".dist-info/licenses/LICENSE") for name in names)
 
 
@@ -104,7 +105,10 @@ def test_installed_wheel_runs_its_commands(installation: Installation):
     assert Path(home).is_relative_to(installation.folder)
     assert installation.run("agentface", "--version").split()[-1] == agentface.__version__
     assert "0 faults" not in (checked := installation.run("agentface", "check"))
-    assert all(f"{Path(home).parent / '_data' / place}: good" in checked for place in ("rules", "regions/amber"))
+    assert all(
+        f"{Path(home).parent / '_data' / place}: good" in checked
+        for place in ("rules", "regions/tissue.yaml", "regions/amber")
+    )
     explained = json.loads(installation.run("agentface", "explain", "--emotion", "happiness=0.8", "--json", "-"))
     assert explained
     assert "zygomaticus_major" in installation.run("agentface", "explain", "--emotion", "happiness=0.8")

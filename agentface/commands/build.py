@@ -47,7 +47,7 @@ def build(*, recipe: Path, output: Path | None, source: Path | None, face: str, 
         data = fetch(source or source_folder())
         files = _files(folder.name, recipe, data, step)
         for name in _BORROWED:
-            files[name] = _borrowed(name, folder, lender).read_bytes()
+            files[name] = borrowed(name, folder, lender).read_bytes()
         step("checking the face")
         _check(files, folder)
     make_folder(folder)
@@ -56,7 +56,7 @@ def build(*, recipe: Path, output: Path | None, source: Path | None, face: str, 
     click.echo(f"{folder}: written; agentface show --face {_named(folder)} shows it")
 
 
-def _borrowed(name: str, folder: Path, lender: Path) -> Path:
+def borrowed(name: str, folder: Path, lender: Path) -> Path:
     """Where a file of the new face comes from: its folder, the lender's, or, for the tissue, the anatomist's table."""
     from agentface.tissue.reading import anatomy_file
 

@@ -6,10 +6,13 @@ from io import StringIO
 from types import SimpleNamespace
 
 import pytest
+from click.testing import CliRunner
 from rich.console import Console
 
 from agentface import kernel
+from agentface.cli import cli
 from agentface.commands import options
+from agentface.deform.protocol import deformer_names
 
 
 @pytest.mark.parametrize(
@@ -32,3 +35,8 @@ def test_kernels_are_kept_once_one_is_compiled(tmp_path, monkeypatch):
     assert not kernel.any_kept()
     assert twice(2) == 4
     assert kernel.any_kept()
+
+
+def test_the_help_of_a_command_names_every_deformer():
+    told = " ".join(CliRunner().invoke(cli, ["render", "--help"]).output.split())
+    assert all(name in told for name in deformer_names())

@@ -22,7 +22,7 @@ def test_a_shipped_face_is_made_again_byte_for_byte(face):
     files = face_files(face, read_recipe(recipe, topology().mesh), recipe.read_text(), topology())
     assert {name for name, content in files.items() if (folder / name).read_bytes() != content} == set()
     assert {path.name for path in folder.iterdir()} - files.keys() == {
-        *("recipe.yaml", "muscles.yaml", "asymmetry.yaml", "look.yaml", "looks")
+        *("recipe.yaml", "muscles.yaml", "tissue.yaml", "asymmetry.yaml", "look.yaml", "looks")
     }
 
 

@@ -139,7 +139,13 @@ FAULTS = [
     ),
     ([("{risorius: 0.75", "{risorius: 1.5")], "risorius: 1.5", "muscles.risorius.moved_by.risorius", "to 1", "1.5"),
     ([(r"moved_by: \{mentalis: 1.0\}", "moved_by: {}")], "moved_by: {}", "muscles.mentalis.moved_by", "1 item", "{}"),
-    ([("action_unit: 20", "action_unit: lots")], "action_unit: lots", "muscles.risorius.action_unit", "integer", "lots"),
+    (
+        [("action_unit: 20", "action_unit: lots")],
+        "action_unit: lots",
+        "muscles.risorius.action_unit",
+        "integer",
+        "lots",
+    ),
     (
         [(ROW, r"\g<0>"), ("fall_finish: 1.1", "fall_finish: 0.55")],
         "fall_finish: 0.55",

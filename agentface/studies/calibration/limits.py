@@ -41,9 +41,9 @@ def limits_of(deformer: str) -> Limits:
 
 def begin_of(deformer: str = DEFAULT_DEFORMER) -> str:
     """The line above the table of a deformer in a document."""
-    if deformer == DEFAULT_DEFORMER:
-        return "<!-- begin: written by `agentface calibrate --table -o docs/calibration.md` -->\n"
-    return f"<!-- begin: written by `agentface calibrate --table --deformer {deformer} -o FILE` -->\n"
+    chosen = "" if deformer == DEFAULT_DEFORMER else f" --deformer {deformer}"
+    document = "docs/tissue.md" if deformer in TISSUE_DEFORMERS else "docs/calibration.md"
+    return f"<!-- begin: written by `agentface calibrate --table{chosen} -o {document}` -->\n"
 
 
 def missed(rows: dict[int, Agreement], limits: Limits = VECTOR_MUSCLE_LIMITS) -> list[str]:
