@@ -270,3 +270,15 @@ def sweep(
             most = larger(most, move * move)
             store(positions, at + component * LANES, load(positions, at + component * LANES) + move)
         moved[batch] = largest(most)
+
+
+@kernel(error_model="numpy", fastmath=True)
+def shift(positions: Floats, rows: Floats, parts: Floats) -> None:
+    """Adds ``parts (K,)`` of the ``rows (K, N)`` to the first N coordinates of ``positions``."""
+    moved, every = positions.ravel(), rows.ravel()
+    for row in range(parts.shape[0]):
+        part = splat(parts[row])
+        if parts[row] != ZERO:
+            start = row * rows.shape[1]
+            for at in range(0, rows.shape[1], LANES):
+                store(moved, at, load(moved, at) + part * load(every, start + at))

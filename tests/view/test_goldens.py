@@ -47,6 +47,16 @@ def test_expressions_look_as_they_did(goldens, name, quality):
         goldens.compare(f"{name}-{quality}-{expression}", face.render(SIZE, quality=quality))
 
 
+@pytest.mark.slow
+@pytest.mark.gl
+@pytest.mark.parametrize("name", face_names())
+def test_expressions_of_tissue_look_as_they_did(goldens, name):
+    face = Face(name, deformer="tissue")
+    for expression in EMOTIONS:
+        face.set_emotion({expression: 1.0}, fade=0.0)
+        goldens.compare(f"{name}-tissue-{expression}", face.render(SIZE, quality="portrait"))
+
+
 def example(name: str):
     spec = spec_from_file_location(name, EXAMPLES / f"{name}.py")
     module = module_from_spec(spec)

@@ -21,6 +21,12 @@ FIGURES: dict[str, str] = {
     "rings": "the rings of vertices round mouth and eyes",
     "looks": "the faces in their looks, and the styles of hair",
     "expressions": "Figures 13 to 16: neutral, surprise, happiness, sadness",
+    "springs": "the second paper's Figure 2: the three layers, and the springs in and between them",
+    "integrated_face": "its Figure 4: the skull, the 23 muscles, the hypodermis",
+    "cheek_cut": "a cut through the cheek, at rest and in happiness",
+    "breadth_first": "its Figure 5: the order of the adaptive scheme on the mesh",
+    "tissue_expressions": "its Figure 6: the neutral face and five expressions of the layered tissue",
+    "tissue_charts": "its Figures 7 and 8: errors and times of its schemes and ours, of a report that is kept",
     "window": "the window, on a virtual display",
 }
 """The figures and what they show; each is a module of this package with ``figures(face) -> {file name: PNG}``,

@@ -22,8 +22,8 @@ _SETTLED_MM = 2e-4
 class BlockDescent:
     """Equilibria that follow swinging muscles; those of numpy are exact and take seconds."""
 
-    def __init__(self, tables: TissueTables, *, compiled: bool = True) -> None:
-        self._tables, self._compiled = tables, compiled
+    def __init__(self, tables: TissueTables, *, compiled: bool = True, sweeps: int = SWEEPS) -> None:
+        self._tables, self._compiled, self._sweeps = tables, compiled, sweeps
         self._moving = len(tables.columns.first) - 1
         self.positions: Floats = tables.columns.rest.copy()
         count = len(tables.loads)
@@ -64,14 +64,13 @@ class BlockDescent:
         if not self._compiled:
             self.positions[:] = equilibrium(tables, contractions, compiled=False)
             return
-        from agentface.tissue.descent_compiled import sweep
+        from agentface.tissue.descent_compiled import shift, sweep
 
         powers = tables.responses.powers(contractions)
-        ahead = (powers - self._powers) @ tables.responses.columns
+        shift(self.positions, tables.responses.columns, powers - self._powers)
         self._powers = powers
-        self.positions[: self._moving] += ahead.reshape(self.positions[: self._moving].shape)
         loads = np.tensordot(contractions.astype(np.float32), tables.loads, 1)
-        for _ in range(SWEEPS):
+        for _ in range(self._sweeps):
             sweep(tables.columns, self.positions, loads, self._batches, self._moving, LONGER, self._moved)
         self._settled = False
 
