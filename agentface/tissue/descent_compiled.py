@@ -20,8 +20,7 @@ from agentface.tissue.springs_compiled import ONE, ZERO, column, neighbours, pre
 
 _COMPONENTS, _SPRINGS = 3, 7
 _TRIANGLE = NODES * (NODES + 1) // 2
-_ROW = tuple(row * (row + 1) // 2 for row in range(NODES))
-"""Where each row of a lower triangle begins."""
+_NOTHING = np.float32(1e-20)
 _SINGULAR = np.float32(1e-6)
 """What a lane without a column has on its diagonal."""
 
@@ -155,6 +154,71 @@ def put_between(matrix: Any, node: Any, other: Any, state: Any) -> Any:
     store(matrix, at + 2 * LANES, zero - state[8])
 
 
+@kernel(error_model="numpy", inline="always", fastmath=True)
+def put_crossing(matrix: Any, block: Any) -> Any:
+    """Writes the block between hypodermis (rows) and epidermis of a column, which prisms join."""
+    for row in range(3):
+        at = ((6 + row) * (7 + row) // 2) * LANES
+        store(matrix, at, block[3 * row])
+        store(matrix, at + LANES, block[3 * row + 1])
+        store(matrix, at + 2 * LANES, block[3 * row + 2])
+
+
+@kernel(error_model="numpy", inline="always", fastmath=True)
+def crossed(block: Any, slopes: Any, slope: Any) -> Any:
+    """That block with one prism more."""
+    ux, uy, uz, lx, ly, lz = slopes
+    sx, sy, sz = slope * lx, slope * ly, slope * lz
+    return (
+        block[0] + sx * ux, block[1] + sx * uy, block[2] + sx * uz,
+        block[3] + sy * ux, block[4] + sy * uy, block[5] + sy * uz,
+        block[6] + sz * ux, block[7] + sz * uy, block[8] + sz * uz,
+    )  # fmt: skip
+
+
+@kernel(error_model="numpy", inline="always", fastmath=True)
+def surrounded(columns: Any, batch: Any, own: Any, positions: Any) -> Any:
+    """What the neighbours do to a batch: a state (force, stiffness) a layer, and the block that prisms join."""
+    law, zero, whole = columns.law, splat(ZERO), int(columns.law[5]) == 0
+    pull, inverse = columns.pull, columns.inverse
+    e, d, h = (own[0], own[1], own[2]), (own[3], own[4], own[5]), (own[6], own[7], own[8])
+    steady = column(columns.steady, batch)
+    epidermis = (steady[0], steady[1], steady[2], zero, zero, zero, zero, zero, zero)
+    dermis = (steady[3], steady[4], steady[5], zero, zero, zero, zero, zero, zero)
+    hypodermis = (steady[6], steady[7], steady[8], zero, zero, zero, zero, zero, zero)
+    block = (zero, zero, zero, zero, zero, zero, zero, zero, zero)
+    first, last = columns.first[batch], columns.first[batch + 1]
+    before = neighbours(positions, columns.neighbour, last - 1)
+    for row in range(first, last):
+        there = neighbours(positions, columns.neighbour, row)
+        if whole:
+            volume, slopes = prism(own, before, there)
+            over = load(columns.volume, (last - 1 if row == first else row - 1) * LANES)
+            pressure, slope = pressed(volume * over)
+            exists = over * over * inverse_root(over * over * over * over + _NOTHING)
+            push, slope = zero - law[3] * exists * pressure, law[3] * slope * over
+            epidermis = pushed(epidermis, slopes[0], slopes[1], slopes[2], push, slope)
+            hypodermis = pushed(hypodermis, slopes[3], slopes[4], slopes[5], push, slope)
+            block = crossed(block, slopes, slope)
+        before = there
+        ne, nd, nh = (there[0], there[1], there[2]), (there[3], there[4], there[5]), (there[6], there[7], there[8])
+        at = row * _SPRINGS * LANES
+        epidermis = bent(epidermis, e, ne, load(pull, at), load(inverse, at), law)
+        at += LANES
+        dermis = bent(dermis, d, nd, load(pull, at), load(inverse, at), law)
+        at += LANES
+        hypodermis = bent(hypodermis, h, nh, load(pull, at), load(inverse, at), law)
+        at += LANES
+        epidermis = bent(epidermis, e, nd, load(pull, at), load(inverse, at), law)
+        at += LANES
+        dermis = bent(dermis, d, ne, load(pull, at), load(inverse, at), law)
+        at += LANES
+        dermis = bent(dermis, d, nh, load(pull, at), load(inverse, at), law)
+        at += LANES
+        hypodermis = bent(hypodermis, h, nd, load(pull, at), load(inverse, at), law)
+    return epidermis, dermis, hypodermis, block
+
+
 @kernel(error_model="numpy", fastmath=True)
 def sweep(
     columns: Columns, positions: Floats, loads: Floats, batches: Indices, count: int, longer: float, moved: Floats
@@ -164,101 +228,36 @@ def sweep(
     ``positions`` are moved in place; ``loads (B, 3, LANES)`` act on the hypodermis; ``moved (B,)`` gets the largest
     step of each batch in mm, squared.
     """
-    law = columns.law
-    rho, whole = law[3], int(law[5]) == 0
-    pull, inverse = columns.pull, columns.inverse
+    law, zero, relax = columns.law, splat(ZERO), np.float32(longer)
     matrix, force = np.empty((_TRIANGLE, LANES), np.float32), np.empty((NODES, LANES), np.float32)
-    zero = splat(ZERO)
-    none = (zero, zero, zero, zero, zero, zero, zero, zero, zero)
-    relax = np.float32(longer)
     for turn in range(count):
         batch = batches[turn]
         own = column(positions, batch)
+        epidermis, dermis, hypodermis, block = surrounded(columns, batch, own, positions)
         e, d, h = (own[0], own[1], own[2]), (own[3], own[4], own[5]), (own[6], own[7], own[8])
-        steady = column(columns.steady, batch)
-        epidermis = (steady[0], steady[1], steady[2], zero, zero, zero, zero, zero, zero)
-        dermis = (steady[3], steady[4], steady[5], zero, zero, zero, zero, zero, zero)
-        hypodermis = (steady[6], steady[7], steady[8], zero, zero, zero, zero, zero, zero)
-        c0, c1, c2, c3, c4, c5, c6, c7, c8 = none
-        first, last = columns.first[batch], columns.first[batch + 1]
-        before = neighbours(positions, columns.neighbour, last - 1)
-        for row in range(first, last):
-            there = neighbours(positions, columns.neighbour, row)
-            if whole:
-                volume, slopes = prism(own, before, there)
-                over = load(columns.volume, (last - 1 if row == first else row - 1) * LANES)
-                pressure, slope = pressed(volume * over)
-                exists = over * over * inverse_root(over * over * over * over + np.float32(1e-20))
-                push = zero - rho * exists * pressure
-                slope = rho * slope * over
-                ux, uy, uz, lx, ly, lz = slopes
-                epidermis = pushed(epidermis, ux, uy, uz, push, slope)
-                hypodermis = pushed(hypodermis, lx, ly, lz, push, slope)
-                sx, sy, sz = slope * lx, slope * ly, slope * lz
-                c0, c1, c2 = c0 + sx * ux, c1 + sx * uy, c2 + sx * uz
-                c3, c4, c5 = c3 + sy * ux, c4 + sy * uy, c5 + sy * uz
-                c6, c7, c8 = c6 + sz * ux, c7 + sz * uy, c8 + sz * uz
-            before = there
-            ne, nd, nh = (there[0], there[1], there[2]), (there[3], there[4], there[5]), (there[6], there[7], there[8])
-            at = row * _SPRINGS * LANES
-            epidermis = bent(epidermis, e, ne, load(pull, at), load(inverse, at), law)
-            at += LANES
-            dermis = bent(dermis, d, nd, load(pull, at), load(inverse, at), law)
-            at += LANES
-            hypodermis = bent(hypodermis, h, nh, load(pull, at), load(inverse, at), law)
-            at += LANES
-            epidermis = bent(epidermis, e, nd, load(pull, at), load(inverse, at), law)
-            at += LANES
-            dermis = bent(dermis, d, ne, load(pull, at), load(inverse, at), law)
-            at += LANES
-            dermis = bent(dermis, d, nh, load(pull, at), load(inverse, at), law)
-            at += LANES
-            hypodermis = bent(hypodermis, h, nd, load(pull, at), load(inverse, at), law)
         at = 2 * batch * LANES
         upper = joined(e, d, load(columns.own_pull, at), load(columns.own_inverse, at), law)
         lower = joined(d, h, load(columns.own_pull, at + LANES), load(columns.own_inverse, at + LANES), law)
         epidermis = plus(epidermis, upper, ONE)
-        dermis = plus(plus(dermis, upper, np.float32(-1.0)), lower, ONE)
-        hypodermis = plus(hypodermis, lower, np.float32(-1.0))
+        dermis = plus(plus(dermis, upper, -ONE), lower, ONE)
+        hypodermis = plus(hypodermis, lower, -ONE)
         fx, fy, fz, along, across = held(columns, batch, columns.rest, h)
         normal = batch * _COMPONENTS * LANES
-        nx, ny, nz = (
-            load(columns.normal, normal),
-            load(columns.normal, normal + LANES),
-            load(columns.normal, normal + 2 * LANES),
-        )
+        nx, ny = load(columns.normal, normal), load(columns.normal, normal + LANES)
+        nz = load(columns.normal, normal + 2 * LANES)
         hypodermis = pushed(hypodermis, nx, ny, nz, zero, across - along)
+        hypodermis = plus(hypodermis, (fx, fy, fz, along, zero, along, zero, zero, along), ONE)
         put_block(matrix, 0, epidermis)
         put_block(matrix, 1, dermis)
-        put_block(
-            matrix,
-            2,
-            (
-                zero, zero, zero,
-                hypodermis[3] + along, hypodermis[4], hypodermis[5] + along,
-                hypodermis[6], hypodermis[7], hypodermis[8] + along,
-            ),
-        )  # fmt: skip
+        put_block(matrix, 2, hypodermis)
         put_between(matrix, 1, 0, upper)
         put_between(matrix, 2, 1, lower)
-        at = (6 * 7 // 2) * LANES
-        store(matrix, at, c0)
-        store(matrix, at + LANES, c1)
-        store(matrix, at + 2 * LANES, c2)
-        at = (7 * 8 // 2) * LANES
-        store(matrix, at, c3)
-        store(matrix, at + LANES, c4)
-        store(matrix, at + 2 * LANES, c5)
-        at = (8 * 9 // 2) * LANES
-        store(matrix, at, c6)
-        store(matrix, at + LANES, c7)
-        store(matrix, at + 2 * LANES, c8)
+        put_crossing(matrix, block)
         for component in range(3):
             store(force, component * LANES, epidermis[component])
             store(force, (3 + component) * LANES, dermis[component])
-        store(force, 6 * LANES, hypodermis[0] + fx + load(loads, normal))
-        store(force, 7 * LANES, hypodermis[1] + fy + load(loads, normal + LANES))
-        store(force, 8 * LANES, hypodermis[2] + fz + load(loads, normal + 2 * LANES))
+            pull = load(loads, normal + component * LANES)
+            store(force, (6 + component) * LANES, hypodermis[component] + pull)
         step(matrix, force)
         # a longer step from the bone would leave it, and the next one come back: what touches it takes Newton's
         touching = across - load(columns.tether, (2 * batch + 1) * LANES)

@@ -10,7 +10,7 @@ from agentface.conventions import Doubles, Floats
 from agentface.tissue.columns import Columns, packed
 from agentface.tissue.lattice import Lattice
 from agentface.tissue.layers import HYPODERMIS
-from agentface.tissue.solvers.equilibrium import relax
+from agentface.tissue.relaxation import relax
 
 LEVELS = (0.5, 1.0)
 """Contractions whose equilibria the polynomials go through, beside rest."""
@@ -29,7 +29,7 @@ class Responses(NamedTuple):
 
 def linear(lattice: Lattice, columns: Columns, forces: Doubles) -> Responses:
     """The responses to ``forces (23, V, 3)`` as far as the tissue at rest is linear, in numpy."""
-    from agentface.tissue.solvers.newton import factors, solve
+    from agentface.tissue.newton import factors, solve
 
     factored, moving, rows = factors(lattice, lattice.points), len(columns.first) - 1, []
     for pull in forces:

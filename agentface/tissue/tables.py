@@ -15,10 +15,10 @@ from agentface.tissue.columns import Columns, coloured, pack
 from agentface.tissue.lattice import Lattice, build_lattice
 from agentface.tissue.layers import HYPODERMIS
 from agentface.tissue.muscles import Drive, nodal_forces
+from agentface.tissue.oscillators import Oscillators
+from agentface.tissue.relaxation import new_loads
 from agentface.tissue.responses import LEVELS, Responses, linear, measure
 from agentface.tissue.skin import EpidermisTables
-from agentface.tissue.solvers.equilibrium import new_loads
-from agentface.tissue.solvers.oscillators import Oscillators
 from agentface.tissue.tissue_file import DynamicsTable, TissueFile
 
 

@@ -10,8 +10,9 @@ from agentface.head.model import HeadModel
 from agentface.tissue.columns import unpacked
 from agentface.tissue.forces import energy, forces
 from agentface.tissue.layers import EPIDERMIS, HYPODERMIS
-from agentface.tissue.solvers.equilibrium import equilibrium, relax
-from agentface.tissue.solvers.newton import newton
+from agentface.tissue.newton import newton
+from agentface.tissue.relaxation import relax
+from agentface.tissue.solvers.equilibrium import equilibrium
 from agentface.tissue.tables import TissueTables
 
 SAME_MM = 0.1

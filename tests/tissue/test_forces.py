@@ -24,7 +24,7 @@ from agentface.tissue.forces import (
 )
 from agentface.tissue.lattice import Lattice
 from agentface.tissue.layers import HYPODERMIS
-from agentface.tissue.solvers.equilibrium import new_loads
+from agentface.tissue.relaxation import new_loads
 from agentface.tissue.tables import TissueTables
 from agentface.tissue.tissue_file import VolumeForm
 

@@ -7,7 +7,7 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from agentface.conventions import Doubles
-from agentface.tissue.solvers.oscillators import Oscillators
+from agentface.tissue.oscillators import Oscillators
 
 SWING = Oscillators(np.array([20.0, 35.0, 50.0]), np.array([0.5, 1.0, 1.6]))
 

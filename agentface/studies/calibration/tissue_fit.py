@@ -21,8 +21,8 @@ from agentface.tissue.columns import Columns, coloured, pack, unpacked
 from agentface.tissue.lattice import Lattice, build_lattice
 from agentface.tissue.layers import EPIDERMIS, HYPODERMIS
 from agentface.tissue.muscles import unit_field
-from agentface.tissue.solvers.equilibrium import gradually, new_loads
-from agentface.tissue.solvers.newton import factors, solve
+from agentface.tissue.newton import factors, solve
+from agentface.tissue.relaxation import gradually, new_loads
 from agentface.tissue.tissue_file import TISSUE_FILE, TISSUE_MUSCLES, UNPAIRED, MuscleRow, TissueFile
 
 Progress = Callable[[str], None]

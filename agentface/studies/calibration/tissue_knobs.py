@@ -12,7 +12,7 @@ from agentface.tissue.tissue_file import LinearRow, MuscleRow, SheetRow, Sphinct
 
 _BONE_END, _SKIN_END = 0.40, 0.25
 """How far the two ends may go from where the row has them, in eye separations."""
-_APART = 0.09
+_APART = 0.3
 """The least between ``fall_near``, ``fall_start`` and ``fall_finish``, in eye separations."""
 EXACT = 12
 """Digits that change nothing."""
@@ -46,7 +46,7 @@ def _of_sheet() -> list[Knob]:
 def _of_cone(row: LinearRow) -> list[Knob]:
     start, finish = row.fall_start, row.fall_finish
     return [
-        Knob(("zone_deg",), 8.0, 60.0),
+        Knob(("zone_deg",), 0.65 * row.zone_deg, 1.6 * row.zone_deg),
         Knob(("fall_near",), 0.0, 0.8 * start),
         Knob(("fall_start",), 0.6 * start, 1.3 * start),
         Knob(("fall_finish",), 0.7 * finish, 1.4 * finish),

@@ -68,8 +68,9 @@ def figures(face: str | Path) -> dict[str, bytes]:
     return {"tissue-errors.png": in_colours(errors(report)), "tissue-times.png": in_colours(times(report))}
 
 
-def read_report(path: Path) -> dict[str, Any]:
+def read_report(path: str | Path) -> dict[str, Any]:
     """What ``agentface bench tissue --json`` wrote; raises DataError where it is missing or something else."""
+    path = Path(path)
     hint = f"make it with `agentface bench tissue --json {path}`"
     try:
         report = json.loads(path.read_text(encoding="utf-8"))

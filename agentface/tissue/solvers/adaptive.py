@@ -15,7 +15,8 @@ from agentface.conventions import Doubles, Floats, Indices
 from agentface.tissue.columns import Columns, coloured, pack, packed, rings_of, unpacked
 from agentface.tissue.lattice import Lattice
 from agentface.tissue.members import Mask
-from agentface.tissue.solvers.equilibrium import equilibrium, new_loads
+from agentface.tissue.relaxation import new_loads
+from agentface.tissue.solvers.equilibrium import equilibrium
 from agentface.tissue.solvers.semi_implicit import stable_step
 from agentface.tissue.tables import TissueTables
 

@@ -9,7 +9,8 @@ from __future__ import annotations
 import numpy as np
 
 from agentface.conventions import Doubles, Floats
-from agentface.tissue.solvers.equilibrium import LONGER, equilibrium
+from agentface.tissue.relaxation import LONGER
+from agentface.tissue.solvers.equilibrium import equilibrium
 from agentface.tissue.tables import TissueTables
 
 SWEEPS = 3
