@@ -16,6 +16,7 @@ from agentface import AgentFaceError, EmotionState, Face, FacePose
 from agentface.errors import InvalidValueError, UnknownNameError
 from agentface.head.model import load_model
 from tests.clocks import ManualClock
+from tests.deform.jelly import Jelly
 from tests.heads import head_model
 
 KEYS = ["face", "emotion", "shown", "speech", "gaze_deg", "frame_ms", "messages", "errors"]
@@ -40,6 +41,18 @@ def test_an_emotion_moves_the_face_and_neutral_brings_it_back(face):
     assert 2e-3 < np.linalg.norm(there - rest, axis=1).max() < 0.04
     face.neutral(0.1)
     np.testing.assert_array_equal(face.step(0.2).vertices, rest)
+
+
+def test_another_deformer_takes_over_where_it_stands(face):
+    other = Jelly(face.model)
+    face.set_muscle("jaw_open", 1.0, fade=0.0)
+    shown = face.step(1.0).vertices.copy()
+    face.take_deformer(other)
+    assert face.deformer is other
+    np.testing.assert_array_equal(face.geometry.vertices, shown)
+    assert np.abs(face.step(1e-3).vertices - shown).max() > 1e-3, "it stood at rest"
+    face.step(100.0)
+    np.testing.assert_allclose(face.geometry.vertices, shown, atol=1e-6)
 
 
 def test_one_name_leaves_the_other_emotions_and_a_mapping_does_not(face):

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
@@ -15,6 +16,7 @@ from agentface.resources import DEFAULT_FACE
 if TYPE_CHECKING:
     from agentface.face import Face
 
+_COMPILING = "compiling for this machine, which takes about a minute once"
 _Command = TypeVar("_Command", bound=Callable[..., Any])
 
 
@@ -126,23 +128,35 @@ def face_options(command: _Command) -> _Command:
     return face(deformer_option(command))
 
 
-def make_face(face: str, deformer: str, *, compiled: bool = True, look: str | None = None) -> Face:
-    """The face that the options name; not ``compiled``, it is ready sooner and slow a frame."""
+def make_face(
+    face: str, deformer: str, *, compiled: bool = True, look: str | None = None, running: bool = False
+) -> Face:
+    """The face that the options name; not ``compiled``, it is ready sooner and slow a frame.
+
+    ``running``: with all loaded that its first frames need, or compiled the first time on a machine. A terminal is
+    told of the wait.
+    """
     from agentface.face import Face
 
-    return Face(face, deformer=deformer, compiled=compiled, look=look)
+    with _wait_told(face, compiled=compiled):
+        made = Face(face, deformer=deformer, compiled=compiled, look=look)
+        if running:
+            made.warm_up()
+    return made
 
 
-def warm_up(face: Face) -> None:
-    """Load what a running face needs, or compile it the first time on a machine: a terminal is told of the wait."""
+@contextmanager
+def _wait_told(face: str, *, compiled: bool) -> Iterator[None]:
+    terminal = console()
+    if not terminal.is_terminal:
+        yield
+        return
     from agentface.kernel import any_kept
 
-    terminal = console()
-    if not terminal.is_terminal or any_kept():
-        face.warm_up()
-        return
-    with terminal.status("compiling for this machine, which takes about half a minute once"):
-        face.warm_up()
+    # asked once: what a deformer is made of may be compiled before its kernels are
+    known = not compiled or any_kept()
+    with terminal.status(f"preparing {face}" if known else _COMPILING):
+        yield
 
 
 def write_json(file: str, content: dict[str, Any]) -> None:

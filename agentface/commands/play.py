@@ -18,7 +18,6 @@ from agentface.commands.options import (
     look_option,
     make_face,
     size_option,
-    warm_up,
 )
 from agentface.commands.streams import tell
 from agentface.errors import DataError, Fault, GraphicsError
@@ -75,12 +74,11 @@ def play(
     if output is not None and loop:
         raise click.UsageError("--loop goes without -o")
     score = _score(document)
-    shown = make_face(face, deformer, look=look)
+    shown = make_face(face, deformer, look=look, running=output is None)
     with until_told() as ending:
         if output is not None:
             _film(shown, score, Shot(output, size, camera, quality or "fast", fps, look), ending)
             return
-        warm_up(shown)
         try:
             _show(shown, score, ending, look, camera, quality, loop=loop)
         except GraphicsError as error:

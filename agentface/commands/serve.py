@@ -19,7 +19,6 @@ from agentface.commands.options import (
     look_option,
     make_face,
     size_option,
-    warm_up,
 )
 from agentface.commands.streams import say, tell
 
@@ -72,8 +71,7 @@ def serve(
     _check_options(given(ctx), window=view == "window", record=record is not None)
     from agentface.io.osc.server import OscServer
 
-    shown = make_face(face, deformer, look=look)
-    warm_up(shown)
+    shown = make_face(face, deformer, look=look, running=True)
     with until_told() as ending, OscServer(shown, *osc) as server:
         if view == "window":
             _in_a_window(server, shown, ending, look, quality, camera)

@@ -1,4 +1,4 @@
-"""What commands share: the wait for the compiler is told, once a machine and to a terminal alone."""
+"""What commands share: the wait for a face is told, to a terminal alone."""
 
 from __future__ import annotations
 
@@ -15,16 +15,44 @@ from agentface.commands import options
 from agentface.deform.protocol import deformer_names
 
 
+@pytest.fixture
+def screen(monkeypatch):
+    """What a terminal is told while a face is made, which takes no time here."""
+    said = StringIO()
+    face = SimpleNamespace(warm_up=lambda: said.write("warmed up"))
+    monkeypatch.setattr("agentface.face.Face", lambda *_, **__: face)
+    monkeypatch.setattr(options, "console", lambda: Console(file=said, force_terminal=True, width=120))
+    return said
+
+
 @pytest.mark.parametrize(
-    ("terminal", "kept", "told"), [(True, False, True), (True, True, False), (False, False, False)]
+    ("kept", "compiled", "told", "untold"),
+    [
+        (False, True, "compiling for this machine", "preparing"),
+        (True, True, "preparing onyx", "compiling"),
+        (False, False, "preparing onyx", "compiling"),
+    ],
 )
-def test_a_terminal_is_told_that_kernels_are_compiled(monkeypatch, terminal, kept, told):
-    screen, warmed = StringIO(), []
-    monkeypatch.setattr(options, "console", lambda: Console(file=screen, force_terminal=bool(terminal), width=120))
-    monkeypatch.setattr(kernel, "any_kept", lambda: bool(kept))
-    options.warm_up(SimpleNamespace(warm_up=lambda: warmed.append(1)))
-    assert warmed == [1]
-    assert ("compiling for this machine" in screen.getvalue()) is told
+def test_a_terminal_is_told_why_it_waits(monkeypatch, screen, kept, compiled, told, untold):
+    monkeypatch.setattr(kernel, "any_kept", lambda: kept)
+    options.make_face("onyx", "tissue", compiled=compiled)
+    assert told in screen.getvalue()
+    assert untold not in screen.getvalue()
+
+
+def test_a_deformer_that_compiles_a_part_leaves_the_wait_for_the_rest_told(monkeypatch, screen):
+    kept = iter([False, True])
+    monkeypatch.setattr(kernel, "any_kept", lambda: next(kept))
+    options.make_face("onyx", "tissue", running=True)
+    assert "warmed up" in screen.getvalue()
+    assert "compiling for this machine" in screen.getvalue()
+    assert "preparing" not in screen.getvalue()
+
+
+def test_what_is_no_terminal_is_told_nothing(monkeypatch, screen):
+    monkeypatch.setattr(options, "console", lambda: Console(file=screen, force_terminal=False))
+    options.make_face("onyx", "tissue", running=True)
+    assert screen.getvalue() == "warmed up"
 
 
 def test_kernels_are_kept_once_one_is_compiled(tmp_path, monkeypatch):

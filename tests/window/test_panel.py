@@ -1,6 +1,11 @@
 """The panel on a virtual display, used with a real mouse and real keys."""
 
+import shutil
+
 import pytest
+
+from agentface.resources import face_folder
+from agentface.tissue.reading import read_tissue
 
 pytestmark = [pytest.mark.gl, pytest.mark.slow]
 
@@ -125,6 +130,71 @@ def test_muscles_and_rules(on_a_display):
     assert seen["released"] == {}
     assert max(seen["rules"]) == 1.0
     assert seen["frame"]
+
+
+def test_the_skull_is_nudged_seen_and_saved(on_a_display, tmp_path):
+    shutil.copytree(face_folder("amber"), tmp_path / "amber")
+    file = tmp_path / "amber" / "tissue.yaml"
+    before = file.read_text()
+    seen = on_a_display(f"""
+        from dataclasses import replace
+        from agentface.tissue.deformer import TissueDeformer
+
+        def remade(self, file, pose):  # at once
+            tissue = self.tissue._replace(lattice=replace(self.tissue.lattice, file=file))
+            return TissueDeformer(self._model, tissue=tissue)
+
+        TissueDeformer.remade = remade
+
+        def play():
+            yield from frames(3)
+            skull = window.controls.skull
+            for section in ("Emotions", "Presets", "View", "Gaze, jaw, head", "Skull"):
+                yield from click(section)
+            face = below_the_hint()
+            yield from click("Show the bone", 0.1)
+            yield from frames()
+            seen["bone"] = float(np.abs(below_the_hint() - face).mean())
+            first = window.controls.face.deformer
+
+            yield from point(*at("translate_mm_z"))
+            yield from arrives("mousedown", 1)
+            yield from frames()
+            yield from point(*at("translate_mm_z", 0.98))
+            seen["dragged"] = skull.table.translate_mm, skull.preparing
+            seen["stands out"] = skull.nearness().outside_mm
+            yield from arrives("mouseup", 1)
+            yield from until(lambda: window.controls.face.deformer is not first)
+            seen["made"] = window.controls.face.deformer.tissue.lattice.file.skull.translate_mm
+            yield from click("translate_mm_z", button=3)
+            seen["right click"] = skull.table.translate_mm
+            yield from click("scale_x", 0.9)
+            yield from click("save skull")
+            seen["scale"] = skull.table.scale
+            yield from click("reset skull")
+            seen["reset"] = skull.nudged
+            yield from until(lambda: not skull.preparing)
+            yield from click("Show the bone", 0.1)
+            yield from frames()
+            seen["face"] = float(np.abs(below_the_hint() - face).mean())
+
+        def below_the_hint():
+            return pictures[0][320:, :200].astype(int)
+
+        show(Face({str(tmp_path / "amber")!r}, deformer="tissue"), size=(560, 700))
+    """)
+    assert seen["bone"] > 10
+    assert seen["dragged"] == [[0.0, 0.0, 10.0], False]
+    assert seen["stands out"] > 1.0
+    assert seen["made"] == [0.0, 0.0, 10.0]
+    assert seen["right click"] == [0.0, 0.0, 0.0]
+    assert 1.05 < seen["scale"][0] <= 1.1
+    assert seen["reset"] is False
+    assert seen["face"] < 0.5
+    after = file.read_text().splitlines()
+    changed = [line for line, was in zip(after, before.splitlines(), strict=True) if line != was]
+    assert len(changed) == 1
+    assert read_tissue(file).skull.scale == seen["scale"]
 
 
 def test_a_picture_and_a_film_that_is_cut_off_by_closing(on_a_display, tmp_path):

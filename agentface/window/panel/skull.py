@@ -20,7 +20,7 @@ _LABELS = {
 def skull(controls: SkullControls) -> None:
     """Nine sliders, how near the bone comes, and what becomes of the numbers."""
     _, controls.shown = imgui.checkbox("Show the bone", controls.shown)
-    imgui.set_item_tooltip("the skin as a film over it; amber: tissue lies on the bone, red: it stands out of the skin")
+    imgui.set_item_tooltip("amber: tissue lies on it\nred: it stands out of the skin")
     for key in NUDGES:
         _sliders(controls, key)
     _nearness(controls)
