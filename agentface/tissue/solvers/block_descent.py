@@ -1,7 +1,8 @@
 """The default solver: the muscles swing, and the tissue is in equilibrium with them at every instant.
 
-A frame begins where the stored responses of the muscles lead from the last one; then a few sweeps of block descent
-correct what the responses do not know: how muscles add up.
+A frame begins where the stored responses of the muscles lead from the last one; then block descent corrects what the
+responses do not know, how muscles add up, and only where that is: a batch of columns that did not move in its last turn
+waits for its next one in three frames.
 """
 
 from __future__ import annotations
@@ -13,8 +14,12 @@ from agentface.tissue.relaxation import LONGER
 from agentface.tissue.solvers.equilibrium import equilibrium
 from agentface.tissue.tables import TissueTables
 
-SWEEPS = 3
-"""Sweeps over the whole tissue a frame."""
+_TURNS = 3
+"""Frames in which every batch has a turn."""
+_RESTLESS_MM, _FAR_MM = 0.0015, 0.008
+"""A batch whose last turn moved a node farther has one in every frame; beyond the second, two."""
+_EVERY = 1.0
+"""mm2: marks a batch that must have a turn."""
 _STILL, _STILL_SPEED = 1e-3, 0.02
 """A contraction that is this near to what is asked of it, and this slow (1/s), is there."""
 _SETTLED_MM = 2e-4
@@ -23,14 +28,16 @@ _SETTLED_MM = 2e-4
 class BlockDescent:
     """Equilibria that follow swinging muscles; those of numpy are exact and take seconds."""
 
-    def __init__(self, tables: TissueTables, *, compiled: bool = True, sweeps: int = SWEEPS) -> None:
-        self._tables, self._compiled, self._sweeps = tables, compiled, sweeps
+    def __init__(self, tables: TissueTables, *, compiled: bool = True) -> None:
+        self._tables, self._compiled = tables, compiled
         self._moving = len(tables.columns.first) - 1
         self.positions: Floats = tables.columns.rest.copy()
         count = len(tables.loads)
         self._asked, self._place, self._speed = np.zeros(count), np.zeros(count), np.zeros(count)
         self._powers: Floats = tables.responses.powers(self._place)
-        self._batches, self._moved = np.arange(self._moving, dtype=np.int32), np.zeros(self._moving, np.float32)
+        self._batches = np.arange(self._moving, dtype=np.int32)
+        self._moved: Floats = np.full(self._moving, _EVERY, np.float32)
+        self._frame = 0
         self._settled = True
 
     def reset(self, contractions: Doubles) -> None:
@@ -39,6 +46,7 @@ class BlockDescent:
         self._asked, self._place = contractions.copy(), contractions.copy()
         self._speed = np.zeros_like(self._place)
         self._powers = self._tables.responses.powers(self._place)
+        self._moved[:] = _EVERY
         self._settled = True
 
     def step(self, contractions: Doubles, dt: float) -> None:
@@ -60,6 +68,7 @@ class BlockDescent:
         if not contractions.any():
             self.positions[:] = tables.columns.rest
             self._powers[:] = 0.0
+            self._moved[:] = _EVERY
             self._settled = True
             return
         if not self._compiled:
@@ -71,8 +80,12 @@ class BlockDescent:
         shift(self.positions, tables.responses.columns, powers - self._powers)
         self._powers = powers
         loads = np.tensordot(contractions.astype(np.float32), tables.loads, 1)
-        for _ in range(self._sweeps):
-            sweep(tables.columns, self.positions, loads, self._batches, self._moving, LONGER, self._moved)
+        self._frame = (self._frame + 1) % _TURNS
+        turn = self._batches % _TURNS == self._frame
+        chosen = self._batches[turn | (self._moved > _RESTLESS_MM**2)]
+        sweep(tables.columns, self.positions, loads, chosen, len(chosen), LONGER, self._moved)
+        chosen = chosen[self._moved[chosen] > _FAR_MM**2]
+        sweep(tables.columns, self.positions, loads, chosen, len(chosen), LONGER, self._moved)
         self._settled = False
 
     def _settle(self) -> None:
