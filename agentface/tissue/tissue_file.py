@@ -16,7 +16,7 @@ from agentface.head.muscles import Anchor, Territory
 
 TISSUE_FILE = "tissue.yaml"
 VolumeForm = Literal["energy", "printed", "signed", "epidermis"]
-LARGEST_RHO: dict[str, float] = {"energy": 32.0, "printed": 0.3, "signed": 3.0, "epidermis": 16.0}
+LARGEST_RHO: dict[str, float] = {"energy": 12.0, "printed": 1.0, "signed": 10.0, "epidermis": 16.0}
 """What each form of the volume force bears before it diverges; ``agentface bench tissue --volume`` shows it."""
 TISSUE_MUSCLES = (
     "frontalis_inner", "frontalis_outer", "corrugator", "levator_alaeque_nasi", "levator_labii", "zygomaticus_major",

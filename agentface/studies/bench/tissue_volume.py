@@ -19,13 +19,14 @@ if TYPE_CHECKING:
     from agentface.head.model import HeadModel
 
 FORMS: tuple[tuple[VolumeForm, float], ...] = (
-    ("energy", 0.0), ("printed", 0.05), ("printed", 0.3), ("printed", 1.0), ("printed", 10.0), ("signed", 1.0),
-    ("signed", 3.0), ("epidermis", 8.0), ("energy", 2.0), ("energy", 8.0), ("energy", 16.0),
+    ("energy", 0.0), ("printed", 0.05), ("printed", 0.3), ("printed", 1.0), ("printed", 3.0), ("printed", 10.0),
+    ("signed", 1.0), ("signed", 3.0), ("signed", 10.0), ("epidermis", 8.0), ("epidermis", 16.0), ("energy", 2.0),
+    ("energy", 8.0), ("energy", 12.0), ("energy", 16.0),
 )  # fmt: skip
 """The forms and their rho; 0 is no volume force."""
 _RISE, _STEPS, _LOST_MM = 200, 700, 100.0
 _RADIUS = 0.25
-"""Of the cheek, in eye separations."""
+"""Of the cheek, half the way from its landmark to the cheek bone's, in eye separations."""
 
 
 def run(model: HeadModel | None = None, expression: str = "happiness") -> dict[str, Any]:
@@ -51,7 +52,7 @@ def run(model: HeadModel | None = None, expression: str = "happiness") -> dict[s
 
 def _cheek(model: HeadModel, tables: TissueTables) -> np.typing.NDArray[np.bool_]:
     unit, points = 1e3 * model.landmarks.eye_separation, tables.lattice.rest[EPIDERMIS]
-    middle = 1e3 * model.landmarks["cheek_l"]
+    middle = 500.0 * (model.landmarks["cheek_l"] + model.landmarks["cheekbone_l"])
     away = np.linalg.norm(np.abs(points) * [1, 0, 0] + points * [0, 1, 1] - middle, axis=1)
     return np.asarray(tables.lattice.free & (away < _RADIUS * unit))
 
