@@ -16,18 +16,19 @@ SMILE = FacePose.of(zygomaticus_major=1.0)
 
 
 def test_the_geometric_face_is_found_by_name():
-    assert deformer_names() == ("geometric",)
+    assert deformer_names()[0] == "geometric"
     assert isinstance(make_deformer("geometric", head_model(), compiled=False), GeometricDeformer)
     with pytest.raises(UnknownNameError, match="known: geometric"):
         make_deformer("jelly", head_model())
 
 
 def test_a_name_is_taken_once_and_given_back():
+    before = deformer_names()
     with jelly.registered() as name:
-        assert deformer_names() == ("geometric", name)
-        with pytest.raises(InvalidValueError, match="taken: geometric, jelly"):
+        assert deformer_names() == (*before, name)
+        with pytest.raises(InvalidValueError, match="taken: geometric, .*jelly"):
             register(name, jelly.Jelly)
-    assert deformer_names() == ("geometric",)
+    assert deformer_names() == before
     with pytest.raises(InvalidValueError):
         register("geometric", jelly.Jelly)
 

@@ -19,8 +19,8 @@ from agentface.tissue.layers import EPIDERMIS, HYPODERMIS
 from agentface.tissue.muscles import nodal_forces
 from agentface.tissue.nudge import NUDGES, as_fitted, nearness, nudged, rewritten
 from agentface.tissue.reading import anatomy_file, read_tissue
+from agentface.tissue.relaxation import new_loads, relax
 from agentface.tissue.skull import moved
-from agentface.tissue.solvers.equilibrium import new_loads, relax
 from agentface.tissue.tables import TissueTables
 from agentface.tissue.tissue_file import SkullTable
 

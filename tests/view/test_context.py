@@ -95,6 +95,8 @@ def test_every_shader_compiles(context):
         "cap": ["cap"],
         "sheet": ["sheet"],
         "screen": ["background", "copy"],
+        "bone": ["bone"],
+        "film": ["film"],
     }
     folder = data_folder("shaders")
     assert {path.name.split(".")[0] for path in folder.glob("*.vert.glsl")} == {*fragments, "depth"}

@@ -140,6 +140,7 @@ def test_a_failure_shows_what_differs(tmp_path):
 def test_no_golden_is_left_over_and_all_are_small():
     drawn = {f"example-{name}" for name in ("make_demo", "set_emotion", "moods")}
     drawn |= {"-".join(each) for each in product(face_names(), QUALITIES, ("neutral", *EMOTIONS))}
+    drawn |= {f"{name}-tissue-{expression}" for name, expression in product(face_names(), EMOTIONS)}
     stored = list(FOLDER.iterdir())
     assert {path.stem for path in stored} == drawn
     assert sum(path.stat().st_size for path in stored) < 3e6

@@ -178,10 +178,10 @@ def test_saving_writes_the_numbers_and_nothing_else(controls, face):
 
 def test_what_others_wrote_into_the_file_since_stays(controls, face):
     path = face.model.folder / TISSUE_FILE
-    path.write_text(path.read_text().replace("contact: 10.0", "contact: 12.0  # harder"))
+    path.write_text(path.read_text().replace("contact: 50.0", "contact: 52.0  # harder"))
     controls.nudge("scale", 1, 1.02)
     controls.save()
-    assert "contact: 12.0  # harder\n" in path.read_text()
+    assert "contact: 52.0  # harder\n" in path.read_text()
     assert read_tissue(path).skull.scale == [1.0, 1.02, 1.0]
 
 

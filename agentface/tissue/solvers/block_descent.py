@@ -16,8 +16,8 @@ from agentface.tissue.tables import TissueTables
 
 _TURNS = 3
 """Frames in which every batch has a turn."""
-_RESTLESS_MM, _FAR_MM = 0.0015, 0.008
-"""A batch whose last turn moved a node farther has one in every frame; beyond the second, two."""
+_RESTLESS_MM, _FAR_MM, _MORE = 0.0015, 0.005, 2
+"""A batch whose last turn moved a node farther has one in every frame; beyond the second, up to so many more."""
 _EVERY = 1.0
 """mm2: marks a batch that must have a turn."""
 _STILL, _STILL_SPEED = 1e-3, 0.02
@@ -84,8 +84,9 @@ class BlockDescent:
         turn = self._batches % _TURNS == self._frame
         chosen = self._batches[turn | (self._moved > _RESTLESS_MM**2)]
         sweep(tables.columns, self.positions, loads, chosen, len(chosen), LONGER, self._moved)
-        chosen = chosen[self._moved[chosen] > _FAR_MM**2]
-        sweep(tables.columns, self.positions, loads, chosen, len(chosen), LONGER, self._moved)
+        for _ in range(_MORE):
+            chosen = chosen[self._moved[chosen] > _FAR_MM**2]
+            sweep(tables.columns, self.positions, loads, chosen, len(chosen), LONGER, self._moved)
         self._settled = False
 
     def _settle(self) -> None:

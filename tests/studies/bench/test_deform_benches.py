@@ -60,7 +60,7 @@ def test_an_unknown_benchmark_is_told():
 
     with pytest.raises(UnknownNameError, match="papers"):
         run("paper")
-    assert set(BENCHES) == {"deform", "papers", "frame", "crowd", "fuzzy", "render", "start", "texture"}
+    assert set(BENCHES) == {"deform", "papers", "frame", "crowd", "fuzzy", "render", "start", "texture", "tissue"}
 
 
 # The paper's Table 1.

@@ -108,7 +108,7 @@ def test_faults_of_the_faces_own_table_are_told_before_the_work(face, quick):
     path.write_text(path.read_text(encoding="utf-8").replace("rho: 8.0", "rho: 80.0"), encoding="utf-8")
     said = call(face, code=1).stderr
     assert f"{path}:" in said
-    assert "volume.rho: expected at most 32" in said
+    assert "volume.rho: expected at most 12" in said
     assert not quick
 
 
