@@ -114,6 +114,11 @@ def packed(vertex: Indices, points: Doubles, padding: float = 0.0) -> Floats:
     return np.ascontiguousarray(rows.transpose(0, 2, 1), np.float32)
 
 
+def new_forces(columns: Columns) -> Floats:
+    """Scratch for the forces on the batches that move, and their stiffness: ``(B, 12, LANES)``."""
+    return np.zeros((len(columns.first) - 1, NODES + 3, LANES), np.float32)
+
+
 def unpacked(columns: Columns, positions: Floats) -> Doubles:
     """``(3, V, 3)``: the points of positions."""
     rows = positions.reshape(-1)[columns.place[:, None] + LANES * np.arange(NODES)]

@@ -16,6 +16,8 @@ from agentface.tissue.springs_compiled import ONE, ZERO, column, neighbours, pre
 _ENERGY, _PRINTED, _SIGNED, _EPIDERMIS = range(4)
 _SPRINGS, _COMPONENTS = 7, 3
 _TINY = np.float32(1e-20)
+STATES = NODES + 3
+"""Of a column: nine coordinates of force, three stiffnesses."""
 
 
 @kernel(error_model="numpy", inline="always", fastmath=True)
@@ -81,9 +83,7 @@ def squeezed(columns: Any, own: Any, one: Any, other: Any, row: Any, form: Any) 
 
 
 @kernel(error_model="numpy", inline="always", fastmath=True)
-def column_forces(
-    columns: Any, batch: Any, own: Any, ahead: Any, positions: Any, loads: Any, form: Any, whole: Any
-) -> Any:
+def _states(columns: Any, batch: Any, own: Any, ahead: Any, positions: Any, loads: Any, form: Any, whole: Any) -> Any:
     """Three states (force, stiffness) of a batch whose nodes are at ``own`` and will be at ``ahead``."""
     law = columns.law
     load_at = batch * _COMPONENTS * LANES
@@ -134,22 +134,21 @@ def column_forces(
 
 
 @kernel(error_model="numpy", fastmath=True)
-def net_forces(columns: Columns, positions: Floats, loads: Floats, out: Floats) -> None:
-    """Writes the net force on every column that moves, at ``positions``, to ``out (B, 9, LANES)``.
+def net_forces(
+    columns: Columns, positions: Floats, ahead: Floats, loads: Floats, first: int, last: int, whole: bool, out: Floats
+) -> None:
+    """Writes the net forces on the batches ``first`` to ``last``, and their nodes' stiffness, to ``out``.
 
-    ``loads (B, 3, LANES)`` are the muscles' on the hypodermis.
+    ``out`` is ``(B, 12, LANES)``. Nodes are at ``positions`` and will be ``ahead``, as will be their neighbours;
+    both are the same for forces at rest. ``loads (B, 3, LANES)`` are the muscles' on the hypodermis. A stiffness is
+    the sum of P of stretched springs, or, if ``whole``, of all slopes of tensions.
     """
     form = int(columns.law[5])
-    for batch in range(columns.first.shape[0] - 1):
-        own = column(positions, batch)
-        states = column_forces(columns, batch, own, own, positions, loads, form, False)
-        at = batch * NODES * LANES
-        store(out, at, states[0][0])
-        store(out, at + LANES, states[0][1])
-        store(out, at + 2 * LANES, states[0][2])
-        store(out, at + 3 * LANES, states[1][0])
-        store(out, at + 4 * LANES, states[1][1])
-        store(out, at + 5 * LANES, states[1][2])
-        store(out, at + 6 * LANES, states[2][0])
-        store(out, at + 7 * LANES, states[2][1])
-        store(out, at + 8 * LANES, states[2][2])
+    for batch in range(first, last):
+        states = _states(columns, batch, column(positions, batch), column(ahead, batch), ahead, loads, form, whole)
+        at = batch * STATES * LANES
+        for node in range(3):
+            state = states[node]
+            for component in range(3):
+                store(out, at + (3 * node + component) * LANES, state[component])
+            store(out, at + (NODES + node) * LANES, state[3])

@@ -26,7 +26,7 @@ def test_a_name_is_taken_once_and_given_back():
     before = deformer_names()
     with jelly.registered() as name:
         assert deformer_names() == (*before, name)
-        with pytest.raises(InvalidValueError, match="taken: geometric, .*jelly"):
+        with pytest.raises(InvalidValueError, match=r"taken: geometric, .*jelly"):
             register(name, jelly.Jelly)
     assert deformer_names() == before
     with pytest.raises(InvalidValueError):

@@ -10,9 +10,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from agentface.conventions import Doubles, Indices
-from agentface.deform.lanes import LANES
 from agentface.head.model import HeadModel
-from agentface.tissue.columns import coloured, pack, packed, unpacked
+from agentface.tissue.columns import NODES, coloured, new_forces, pack, packed, unpacked
 from agentface.tissue.forces import (
     energy,
     forces,
@@ -75,10 +74,11 @@ def test_compiled_forces_are_the_same(
     lattice = replace(tissue.lattice, file=file.model_copy(update={"volume": volume}))
     columns = pack(lattice, coloured(lattice, model.mirror))
     moving = len(columns.first) - 1
-    out = np.zeros((moving, 9, LANES), np.float32)
+    out = new_forces(columns)
     positions = packed(columns.vertex, shaken.reshape(3, -1, 3), padding=-1.0)
-    net_forces(columns, positions, new_loads(columns, load.reshape(3, -1, 3)[HYPODERMIS]), out)
-    found = unpacked(columns, np.concatenate([out, np.zeros_like(positions[moving:])])).reshape(-1, 3)
+    loads = new_loads(columns, load.reshape(3, -1, 3)[HYPODERMIS])
+    net_forces(columns, positions, positions, loads, 0, moving, False, out)
+    found = unpacked(columns, np.concatenate([out[:, :NODES], np.zeros_like(positions[moving:])])).reshape(-1, 3)
     told = forces(lattice, shaken, load)
     assert np.abs(found - told).max() < 1e-5 * np.abs(told).max()
 

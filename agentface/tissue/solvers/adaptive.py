@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from agentface.conventions import Doubles, Floats, Indices
-from agentface.tissue.columns import Columns, coloured, pack, packed, rings_of, unpacked
+from agentface.tissue.columns import Columns, coloured, new_forces, pack, packed, rings_of, unpacked
 from agentface.tissue.lattice import Lattice
 from agentface.tissue.members import Mask
 from agentface.tissue.relaxation import new_loads
@@ -116,6 +116,7 @@ class Adaptive:
         self._own: Floats = self.positions
         self._velocities: Floats = np.zeros_like(self.positions)
         self._ahead: Floats = self.positions
+        self._forces = new_forces(tables.columns)
 
     def reset(self, contractions: Doubles) -> None:
         """Stand still in the equilibrium of ``contractions (23,)``."""
@@ -150,7 +151,8 @@ class Adaptive:
             speeds = still if self._expression is None else self._velocities
             self._own = moved_to(before, chosen.columns, there, padding=-1.0)
             self._velocities = moved_to(before, chosen.columns, speeds)
-            self._ahead, self._expression = self._own.copy(), chosen
+            self._ahead, self._forces = self._own.copy(), new_forces(chosen.columns)
+            self._expression = chosen
         return chosen
 
     def iterate(self, contractions: Doubles, dt: float) -> None:
@@ -162,21 +164,22 @@ class Adaptive:
 
     def move_dynamic(self, loads: Floats, dt: float) -> None:
         """The first part of a step: the dynamic nodes."""
-        from agentface.tissue.solvers.semi_implicit_compiled import advance
-
-        assert self._expression is not None, "nodes are grouped before they move"  # noqa: S101 - for the type checker
-        state = (self._own, self._velocities, self._ahead, loads)
-        mass, drag = self._tables.mass, self._tables.drag
-        advance(self._expression.columns, *state, self._expression.dynamic, dt, mass, drag)
+        if self._expression is not None:
+            self._move(self._expression, loads, (0, self._expression.dynamic), dt)
 
     def move_quasi_static(self, loads: Floats) -> None:
         """The second part: the quasi-static nodes, from the nearest to the farthest."""
-        from agentface.tissue.solvers.semi_implicit_compiled import settle
+        if self._expression is not None:
+            last = len(self._expression.columns.first) - 1
+            self._move(self._expression, loads, (self._expression.dynamic, last))
 
-        assert self._expression is not None, "nodes are grouped before they move"  # noqa: S101 - for the type checker
-        columns, first = self._expression.columns, self._expression.dynamic
-        settle(columns, self._own, loads, first, len(columns.first) - 1)
-        self._ahead[first:] = self._own[first:]
+    def _move(self, expression: Expression, loads: Floats, some: tuple[int, int], dt: float | None = None) -> None:
+        """Moves the batches from one to another: dynamic ones by a time step, quasi-static ones without."""
+        from agentface.tissue.solvers.semi_implicit_compiled import move
+
+        state = (self._own, self._velocities, self._ahead, loads, self._forces)
+        mass, drag = self._tables.mass, self._tables.drag
+        move(expression.columns, *state, *some, dt is None, dt or 0.0, mass, drag)
 
     def show(self) -> None:
         """Brings :attr:`positions` up to date."""

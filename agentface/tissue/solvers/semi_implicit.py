@@ -7,6 +7,7 @@ import math
 import numpy as np
 
 from agentface.conventions import Doubles, Floats
+from agentface.tissue.columns import new_forces
 from agentface.tissue.solvers.equilibrium import equilibrium
 from agentface.tissue.tables import TissueTables
 
@@ -28,6 +29,7 @@ class SemiImplicit:
         self.positions: Floats = tables.columns.rest.copy()
         self._ahead = self.positions.copy()
         self._velocities: Floats = np.zeros_like(self.positions[: self._moving])
+        self._forces = new_forces(tables.columns)
         self._contractions = np.zeros(len(tables.loads))
 
     def reset(self, contractions: Doubles) -> None:
@@ -47,9 +49,9 @@ class SemiImplicit:
 
     def iterate(self, contractions: Doubles, dt: float) -> None:
         """One step of ``dt`` s, not longer than :func:`stable_step`."""
-        from agentface.tissue.solvers.semi_implicit_compiled import advance
+        from agentface.tissue.solvers.semi_implicit_compiled import move
 
         tables = self._tables
         loads = np.tensordot(contractions.astype(np.float32), tables.loads, 1)
-        state = (self.positions, self._velocities, self._ahead, loads)
-        advance(tables.columns, *state, self._moving, dt, tables.mass, tables.drag)
+        state = (self.positions, self._velocities, self._ahead, loads, self._forces)
+        move(tables.columns, *state, 0, self._moving, False, dt, tables.mass, tables.drag)
