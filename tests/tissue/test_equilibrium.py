@@ -104,7 +104,7 @@ def test_a_thousand_random_contractions_invert_nothing(tissue: TissueTables) -> 
         guess = tissue.responses.powers(part) @ tissue.responses.columns
         moving = len(tissue.columns.first) - 1
         positions[:moving] += guess.reshape(positions[:moving].shape)
-        relax(tissue.columns, positions, loads_of(tissue, part), tolerance=2e-2, most=400)
+        relax(tissue.columns, positions, loads_of(tissue, part), tolerance=5e-2, most=150)
         points = unpacked(tissue.columns, positions)
         assert np.isfinite(points).all()
         relative = lattice.prisms.volumes(points.reshape(-1, 3)) / lattice.volumes
