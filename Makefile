@@ -17,7 +17,7 @@ debian = if [ "$$(id -u)" = 0 ] && command -v apt-get >/dev/null; \
 TOOLS := xvfb-run:xvfb xauth:xauth xdotool:xdotool xprop:x11-utils oscsend:liblo-tools oscdump:liblo-tools node:nodejs npm:npm
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test lint quick soak matrix docs build clean opengl tools
+.PHONY: help demo test lint quick soak matrix docs build clean opengl tools warm
 
 help: ## this list
 	@sed -n 's/^\([a-z]*\):.*## /make \1\t/p' $(MAKEFILE_LIST) | expand -t 14
@@ -39,12 +39,16 @@ lint: $(INSTALLED)
 	@$(BIN)/ruff format --check $(CODE)
 	@$(BIN)/mypy
 
-test: $(INSTALLED) opengl tools lint ## ruff, mypy, all tests but the soaking ones, and how much of the code they ran
+test: $(INSTALLED) opengl tools lint warm ## ruff, mypy, all tests but the soaking ones, and how much of the code they ran
 	@rm -rf $(dir $(COVERED)) && mkdir -p $(dir $(COVERED))
 	@$(BIN)/coverage run -m pytest $(PARALLEL)
 	@# a child whose disk was full, which is what some tests are about, has left a file that cannot be read
 	@$(BIN)/coverage combine --quiet 2>/dev/null && rm -f $(COVERED).*
 	@$(BIN)/coverage report
+
+# every worker would compile the same kernels, and while it is traced
+warm: $(INSTALLED)
+	@$(BIN)/python -m tests.warm geometric & $(BIN)/python -m tests.warm tissue; status=$$?; wait; exit $$status
 
 quick: $(INSTALLED) opengl lint ## a verdict within a minute: ruff, mypy and the tests that are not slow
 	@$(BIN)/pytest -q $(PARALLEL) -m "not slow and not soak"

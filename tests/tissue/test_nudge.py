@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from agentface.head.model import HeadModel
@@ -83,6 +83,7 @@ def test_a_file_that_says_so_already_is_left_to_the_byte(form: str, tmp_path: Pa
     assert rewritten(FORMS[form], skull_of(FORMS[form], tmp_path)) == FORMS[form]
 
 
+@settings(max_examples=25)
 @given(rotate=NUMBERS, translate=NUMBERS, scale=SCALES)
 def test_any_numbers_are_read_as_they_were_written(
     tmp_path_factory: pytest.TempPathFactory, rotate: list[float], translate: list[float], scale: list[float]

@@ -1,0 +1,31 @@
+"""Compiles the kernels and prepares the faces that many tests share, once: ``python -m tests.warm geometric|tissue``.
+
+Each worker of a test run would compile them for itself, slowed by the measuring of coverage.
+"""
+
+from __future__ import annotations
+
+import sys
+
+from agentface import Face
+from agentface.deform.protocol import make_deformer
+from agentface.head.model import load_model
+from agentface.parameters import FacePose
+from agentface.resources import face_names
+
+
+def warm(deformer: str) -> None:
+    """A step of each face with one deformer, with its asymmetry and without."""
+    for name in face_names():
+        with Face(name, deformer=deformer) as face:
+            face.set_emotion("happiness", 1.0, fade=0.0)
+            face.step(1 / 60)
+        symmetric = make_deformer(deformer, load_model(name, asymmetry=0.0))
+        symmetric.step(FacePose.of(mentalis=0.5), 1 / 60)
+
+
+if __name__ == "__main__":
+    kind = sys.argv[1]
+    warm(kind)
+    if kind == "tissue":
+        warm("tissue-semi-implicit")
