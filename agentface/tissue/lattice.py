@@ -21,6 +21,8 @@ from agentface.tissue.tissue_file import HoldTable, SpringsTable, TissueFile
 
 REFERENCE_MM2 = 8.0
 """The area of skin that stiffness across it and force are given for: most of a face's mesh has about that a vertex."""
+PERIOSTEUM_MM = 0.4
+"""Above the bone, where contact begins: it yields a little, and no node is to enter the bone."""
 _AREAS = (0.15, 3.0)
 """Of the reference: what a vertex may count for, at least and at most."""
 _AT_A_HOLE = 0.3, 0.7
@@ -59,7 +61,7 @@ class Lattice:
         springs: all of them; those between nodes that stay, or that are not in the lattice, are left out.
         spring_count: with those: 3 E + 2 V + 4 E.
         tether: ``(V, 2)`` stiffness of the hypodermis' springs to the bone, along and across the skin.
-        gap: ``(V,)`` mm from the hypodermis down to the bone.
+        gap: ``(V,)`` mm from the hypodermis down to where contact with the bone begins.
         area: ``(V,)`` of a vertex, in ``REFERENCE_MM2``, within bounds; what forces and masses are scaled with.
         prisms: the elements, epidermis to hypodermis.
         volumes: ``(P,)`` mm3 of these at rest.
@@ -125,7 +127,7 @@ def build_lattice(model: HeadModel, file: TissueFile | None = None) -> Lattice:
         springs=springs,
         spring_count=spring_count,
         tether=_tether(model, file, depth, area, beside),
-        gap=np.maximum(-((skull.points - rest[HYPODERMIS]) * normals).sum(axis=1), 0.0),
+        gap=np.maximum(-((skull.points - rest[HYPODERMIS]) * normals).sum(axis=1) - PERIOSTEUM_MM, 0.0),
         area=np.clip(area, *_AREAS),
         prisms=prisms,
         volumes=volumes,

@@ -8,7 +8,7 @@ import numpy as np
 import yaml
 
 from agentface.conventions import Doubles
-from agentface.tissue.lattice import Lattice
+from agentface.tissue.lattice import PERIOSTEUM_MM, Lattice
 from agentface.tissue.layers import EPIDERMIS, HYPODERMIS
 from agentface.tissue.tissue_file import SkullTable
 
@@ -26,7 +26,7 @@ class Nearness(NamedTuple):
     """How near the bone comes to the tissue that moves.
 
     Attributes:
-        room: ``(V,)`` mm from the hypodermis down to the bone; infinite where no tissue moves.
+        room: ``(V,)`` mm from the hypodermis down to where contact begins; infinite where no tissue moves.
         outside: ``(V,)`` mm that the bone stands out of the skin at rest, 0 where it does not.
     """
 
@@ -52,7 +52,7 @@ class Nearness(NamedTuple):
 def nearness(lattice: Lattice, bone: Doubles, hypodermis: Doubles) -> Nearness:
     """How near ``bone (V, 3)`` mm comes to ``hypodermis (V, 3)`` mm, as the forces of contact reckon it."""
     rest, normals = lattice.rest, lattice.normals
-    gap = np.maximum(_along(rest[HYPODERMIS] - bone, normals), 0.0)
+    gap = np.maximum(_along(rest[HYPODERMIS] - bone, normals) - PERIOSTEUM_MM, 0.0)
     room = np.where(lattice.free, gap + _along(hypodermis - rest[HYPODERMIS], normals), np.inf)
     out = np.maximum(_along(bone - rest[EPIDERMIS], normals), 0.0)
     return Nearness(room, np.where(lattice.free, out, 0.0))
