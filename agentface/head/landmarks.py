@@ -25,6 +25,11 @@ PAIRED_LANDMARKS: tuple[str, ...] = (
 _NO_VERTICES = {f"pupil_{side}" for side in SIDES}
 
 
+def both_sides(name: str) -> tuple[str, ...]:
+    """A paired landmark named without its side as its two; another as it is."""
+    return tuple(f"{name}_{side}" for side in SIDES) if name in PAIRED_LANDMARKS else (name,)
+
+
 class LandmarkRow(Table):
     """One landmark: the vertices whose mean it is, and its MPEG-4 feature point where it has one."""
 

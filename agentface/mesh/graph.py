@@ -1,4 +1,4 @@
-"""A mesh as a graph: its edges, its Laplacian, and fields that are harmonic between values that are known."""
+"""A mesh as a graph: its edges, its Laplacian, and fields that are harmonic on it or evened out along edges."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ from agentface.conventions import Doubles, Indices
 
 SparseMatrix = Any
 """A matrix of scipy.sparse, which has no types."""
+Mask = npt.NDArray[np.bool_]
 
 
 def edges_of(triangles: Indices) -> Indices:
@@ -43,7 +44,7 @@ def laplacian(edges: Indices, count: int, weights: Doubles | None = None) -> Spa
     return (sparse.diags(np.asarray(beside.sum(1)).ravel()) - beside).tocsr()
 
 
-def harmonic_weights(matrix: SparseMatrix, unknown: npt.NDArray[np.bool_]) -> tuple[Indices, Doubles]:
+def harmonic_weights(matrix: SparseMatrix, unknown: Mask) -> tuple[Indices, Doubles]:
     """How much each vertex of ``unknown (V,)`` takes of those that are known.
 
     Returns the known vertices that count, ``(K,)``, and ``(U, K)`` weights that make the field harmonic.
@@ -65,4 +66,23 @@ def harmonic(matrix: SparseMatrix, known: Indices, values: Doubles) -> Doubles:
     field[known] = values
     used, weights = harmonic_weights(matrix, unknown)
     field[unknown] = weights @ field[used]
+    return field
+
+
+def grown(mask: Mask, beside: SparseMatrix, rings: int) -> Mask:
+    """A mask with ``rings`` more rings of neighbours."""
+    for _ in range(rings):
+        mask = mask | (beside @ mask.astype(np.float64) > 0.0)
+    return mask
+
+
+def smoothed(beside: SparseMatrix, field: Doubles, rounds: int, weight: float = 0.5) -> Doubles:
+    """A field ``(V,)`` or ``(V, k)`` that has gone ``rounds`` times ``weight`` of the way to the mean round each.
+
+    Also where the mesh is open; on a closed one, :func:`agentface.mesh.evening.evened` does the same by halves.
+    """
+    count = np.maximum(np.asarray(beside.sum(1)), 1.0)
+    count = count if field.ndim > 1 else count.ravel()
+    for _ in range(rounds):
+        field = (1.0 - weight) * field + weight * (beside @ field) / count
     return field

@@ -10,6 +10,12 @@ import numpy.typing as npt
 from agentface.conventions import Doubles, Floats, Indices
 
 
+def doubled_areas(vertices: npt.NDArray[np.floating[Any]], triangles: npt.NDArray[np.integer[Any]]) -> Doubles:
+    """float64 ``(T, 3)``: along each triangle's normal, outward, as long as twice its area."""
+    corners = np.asarray(vertices, dtype=np.float64)[triangles]
+    return np.asarray(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]))
+
+
 def vertex_normals(vertices: npt.NDArray[np.floating[Any]], triangles: npt.NDArray[np.integer[Any]]) -> Doubles:
     """float64 unit ``(V, 3)``, outward.
 
@@ -20,8 +26,7 @@ def vertex_normals(vertices: npt.NDArray[np.floating[Any]], triangles: npt.NDArr
     Returns:
         Outward unit normals; zero where a vertex has no triangle or its triangles have no area.
     """
-    corners = np.asarray(vertices, dtype=np.float64)[triangles]
-    across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    across = doubled_areas(vertices, triangles)
     ends = triangles.ravel()
     total = np.stack([np.bincount(ends, across[:, axis].repeat(3), len(vertices)) for axis in range(3)], axis=1)
     length = np.linalg.norm(total, axis=1, keepdims=True)
@@ -49,8 +54,7 @@ def corner_normals(
         triangles: ``(T, 3)`` vertex indices.
         on_inner_foot: ``(V,)``, see :func:`agentface.head.trains.inner_feet`.
     """
-    corners = np.asarray(vertices, dtype=np.float64)[triangles]
-    across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    across = doubled_areas(vertices, triangles)
     length = np.linalg.norm(across, axis=1, keepdims=True)
     flat = np.divide(across, length, out=np.zeros_like(across), where=length > 0.0)
     shading: Doubles = vertex_normals(vertices, triangles)[triangles]

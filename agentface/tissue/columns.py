@@ -14,9 +14,12 @@ from agentface.conventions import Doubles, Floats, Indices
 from agentface.deform.lanes import LANES
 from agentface.tissue.forces import bending_at_rest
 from agentface.tissue.lattice import REFERENCE_MM2, Lattice
+from agentface.tissue.tissue_file import FORMS
 
 NODES = 9
 """Coordinates of a column: three of the epidermis, of the dermis, of the hypodermis."""
+STATES = NODES + 3
+"""And three stiffnesses, a node's each, beside the forces on them."""
 AROUND = ((0, 0), (1, 1), (2, 2), (0, 1), (1, 0), (1, 2), (2, 1))
 """Layers that the springs from a column to a neighbour join: here, there."""
 CONNECTING = ((0, 1), (1, 2))
@@ -36,7 +39,7 @@ class Columns(NamedTuple):
         volume: ``(R, LANES)`` 1 / volume at rest of the prism between a neighbour and the next; 0 for none.
         normal: ``(B, 3, LANES)`` of the skin.
         tether: ``(B, 2, LANES)`` along and across.
-        gap: ``(B, LANES)`` mm to the bone.
+        gap: ``(B, LANES)`` mm to where contact with the bone begins.
         firmness: ``(B, 3, LANES)`` what the prisms add to the stiffness of a column's nodes, at rest.
         rest: positions at rest.
         law: ``(7,)``: Eq. 1's 1 / unit^2 and two coefficients of its power; rho over area; contact; form; bending.
@@ -116,7 +119,7 @@ def packed(vertex: Indices, points: Doubles, padding: float = 0.0) -> Floats:
 
 def new_forces(columns: Columns) -> Floats:
     """Scratch for the forces on the batches that move, and their stiffness: ``(B, 12, LANES)``."""
-    return np.zeros((len(columns.first) - 1, NODES + 3, LANES), np.float32)
+    return np.zeros((len(columns.first) - 1, STATES, LANES), np.float32)
 
 
 def unpacked(columns: Columns, positions: Floats) -> Doubles:
@@ -234,7 +237,6 @@ def law_of(lattice: Lattice) -> Floats:
     """:attr:`Columns.law`."""
     table = lattice.file
     one, two = {0: (0.0, 0.0), 1: (1.0, 0.0), 2: (2.0, 1.0)}[table.springs.alpha]
-    forms = ("energy", "printed", "signed", "epidermis")
     rho = table.volume.rho / (REFERENCE_MM2 if table.volume.form in ("energy", "epidermis") else 1.0)
     values = (
         table.springs.unit**-2,
@@ -242,7 +244,7 @@ def law_of(lattice: Lattice) -> Floats:
         two,
         rho,
         table.skull.contact,
-        forms.index(table.volume.form),
+        FORMS.index(table.volume.form),
         table.springs.bending,
     )
     return np.array(values, np.float32)

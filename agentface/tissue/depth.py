@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from agentface.conventions import SIDES, Doubles
-from agentface.head.landmarks import PAIRED_LANDMARKS
+from agentface.conventions import Doubles
+from agentface.head.landmarks import both_sides
 from agentface.head.model import HeadModel
 from agentface.head.regions import REGIONS, REST
 from agentface.mesh.graph import SparseMatrix, harmonic
@@ -18,7 +18,7 @@ def depths(model: HeadModel, laplacian: SparseMatrix, table: dict[str, float]) -
     points = model.vertices.astype(np.float64)
     known = dict.fromkeys(np.flatnonzero(model.regions.region_of == REGIONS.index(REST)).tolist(), _SCALP_MM)
     for name, depth in table.items():
-        for full in [f"{name}_{side}" for side in SIDES] if name in PAIRED_LANDMARKS else [name]:
+        for full in both_sides(name):
             nearest = int(((points - model.landmarks[full]) ** 2).sum(axis=1).argmin())
             known[nearest] = depth
     chosen = np.array(sorted(known), np.int32)

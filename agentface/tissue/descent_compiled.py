@@ -14,11 +14,13 @@ from agentface.conventions import Floats, Indices
 from agentface.deform.lanes import LANES
 from agentface.deform.simd import choose, inverse_root, larger, largest, load, splat, store
 from agentface.kernel import kernel
-from agentface.tissue.columns import NODES, Columns
+from agentface.tissue.columns import AROUND, NODES, Columns
 from agentface.tissue.forces_compiled import held
 from agentface.tissue.springs_compiled import ONE, ZERO, column, neighbours, pressed, prism, tension
+from agentface.tissue.tissue_file import FORMS
 
-_COMPONENTS, _SPRINGS = 3, 7
+_COMPONENTS, _SPRINGS = 3, len(AROUND)
+_ENERGY = FORMS.index("energy")
 _TRIANGLE = NODES * (NODES + 1) // 2
 _NOTHING = np.float32(1e-20)
 _SINGULAR = np.float32(1e-6)
@@ -179,7 +181,7 @@ def crossed(block: Any, slopes: Any, slope: Any) -> Any:
 @kernel(error_model="numpy", inline="always", fastmath=True)
 def surrounded(columns: Any, batch: Any, own: Any, positions: Any) -> Any:
     """What the neighbours do to a batch: a state (force, stiffness) a layer, and the block that prisms join."""
-    law, zero, whole = columns.law, splat(ZERO), int(columns.law[5]) == 0
+    law, zero, whole = columns.law, splat(ZERO), int(columns.law[5]) == _ENERGY
     pull, inverse = columns.pull, columns.inverse
     e, d, h = (own[0], own[1], own[2]), (own[3], own[4], own[5]), (own[6], own[7], own[8])
     steady = column(columns.steady, batch)

@@ -11,6 +11,7 @@ import numpy as np
 
 from agentface.conventions import Doubles
 from agentface.mesh.graph import SparseMatrix
+from agentface.mesh.normals import doubled_areas
 from agentface.tissue.elements import Elements
 from agentface.tissue.lattice import REFERENCE_MM2, Lattice
 from agentface.tissue.layers import HYPODERMIS
@@ -103,8 +104,7 @@ def volume_forces(
     forces, relative = np.zeros_like(points), solid.volumes(points) / volumes
     if table.form in ("printed", "signed"):
         corners = lattice.prisms.corners[:, :3]
-        a, b, c = (points[corners[:, corner]] for corner in range(3))
-        ways = np.cross(b - a, c - a)
+        ways = doubled_areas(points, corners)
         ways /= np.linalg.norm(ways, axis=1, keepdims=True)
         size = (relative - 1.0) ** 2 if table.form == "printed" else -(relative - 1.0) * np.abs(relative - 1.0)
         each = np.repeat((table.rho * size[:, None] * ways)[:, None], 3, axis=1)

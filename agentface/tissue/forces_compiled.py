@@ -10,14 +10,13 @@ from agentface.conventions import Floats
 from agentface.deform.lanes import LANES
 from agentface.deform.simd import choose, inverse_root, larger, load, splat, store
 from agentface.kernel import kernel
-from agentface.tissue.columns import NODES, Columns
+from agentface.tissue.columns import AROUND, NODES, STATES, Columns
 from agentface.tissue.springs_compiled import ONE, ZERO, column, neighbours, pressed, prism, tension
+from agentface.tissue.tissue_file import FORMS
 
-_ENERGY, _PRINTED, _SIGNED, _EPIDERMIS = range(4)
-_SPRINGS, _COMPONENTS = 7, 3
+_PRINTED, _SIGNED, _EPIDERMIS = (FORMS.index(form) for form in ("printed", "signed", "epidermis"))
+_SPRINGS, _COMPONENTS = len(AROUND), 3
 _TINY = np.float32(1e-20)
-STATES = NODES + 3
-"""Of a column: nine coordinates of force, three stiffnesses."""
 
 
 @kernel(error_model="numpy", inline="always", fastmath=True)

@@ -7,14 +7,15 @@ from typing import NamedTuple
 
 import numpy as np
 
-from agentface.conventions import SIDES, Doubles, Indices
-from agentface.head.landmarks import PAIRED_LANDMARKS
+from agentface.conventions import Doubles, Indices
+from agentface.head.landmarks import both_sides
 from agentface.head.model import HeadModel
-from agentface.mesh.graph import SparseMatrix, adjacency, edges_of, laplacian
+from agentface.mesh.graph import Mask, SparseMatrix, adjacency, edges_of, grown, laplacian
+from agentface.mesh.normals import doubled_areas
 from agentface.tissue.depth import depths
 from agentface.tissue.elements import Prisms
-from agentface.tissue.layers import DERMIS, EPIDERMIS, HYPODERMIS, area_ratio, grown, inward, thickness
-from agentface.tissue.members import Carried, Mask, Members, carried_by, members
+from agentface.tissue.layers import DERMIS, EPIDERMIS, HYPODERMIS, area_ratio, inward, thickness
+from agentface.tissue.members import Carried, Members, carried_by, members
 from agentface.tissue.reading import tissue_of
 from agentface.tissue.skull import Skull, fit_skull
 from agentface.tissue.tissue_file import HoldTable, SpringsTable, TissueFile
@@ -62,7 +63,7 @@ class Lattice:
         spring_count: with those: 3 E + 2 V + 4 E.
         tether: ``(V, 2)`` stiffness of the hypodermis' springs to the bone, along and across the skin.
         gap: ``(V,)`` mm from the hypodermis down to where contact with the bone begins.
-        area: ``(V,)`` of a vertex, in ``REFERENCE_MM2``, within bounds; what forces and masses are scaled with.
+        area: ``(V,)`` of a vertex, in ``REFERENCE_MM2``, within bounds; what forces are scaled with.
         prisms: the elements, epidermis to hypodermis.
         volumes: ``(P,)`` mm3 of these at rest.
         degenerate: triangles of moving skin that have no prism, because theirs would be inverted or lean over.
@@ -109,7 +110,7 @@ def build_lattice(model: HeadModel, file: TissueFile | None = None) -> Lattice:
     thick = thickness(model, file.lattice, depth, ways, beside, where)
     rest = np.stack([points + (part * thick)[:, None] * ways for part in (0.0, file.lattice.dermis, 1.0)])
     skull = fit_skull(model, points + np.maximum(depth, thick + 0.5)[:, None] * ways, beside, file.skull)
-    face_area = np.linalg.norm(_doubled_areas(points, triangles), axis=1) / 2.0
+    face_area = np.linalg.norm(doubled_areas(points, triangles), axis=1) / 2.0
     area = np.bincount(triangles.ravel(), np.repeat(face_area / 3.0, 3), count) / REFERENCE_MM2
     edge_area = _edge_area(edges, triangles, face_area)
     springs, spring_count = _springs(rest, edges, area, edge_area, file.springs, where)
@@ -208,12 +209,7 @@ def around(model: HeadModel, places: dict[str, HoldTable]) -> Doubles:
     """``(V,)``: how much more firmly the skin round the landmarks is held, 1 elsewhere."""
     field = np.ones(len(model.vertices))
     for name, place in places.items():
-        for full in [f"{name}_{side}" for side in SIDES] if name in PAIRED_LANDMARKS else [name]:
+        for full in both_sides(name):
             away = 1e3 * np.linalg.norm(model.vertices - model.landmarks[full], axis=1)
             field *= place.times ** np.clip(2.0 - away / place.radius_mm, 0.0, 1.0)
     return field
-
-
-def _doubled_areas(points: Doubles, triangles: Indices) -> Doubles:
-    a, b, c = (points[triangles[:, corner]] for corner in range(3))
-    return np.asarray(np.cross(b - a, c - a))

@@ -6,8 +6,9 @@ import numpy as np
 
 from agentface.conventions import Doubles, Indices
 from agentface.head.model import HeadModel
-from agentface.mesh.graph import SparseMatrix
-from agentface.tissue.members import Mask, Members, smoothed
+from agentface.mesh.graph import SparseMatrix, grown, smoothed
+from agentface.mesh.normals import doubled_areas
+from agentface.tissue.members import Members
 from agentface.tissue.tissue_file import LatticeTable
 
 EPIDERMIS, DERMIS, HYPODERMIS = range(3)
@@ -58,19 +59,7 @@ def by_region(model: HeadModel, factors: dict[str, float], beside: SparseMatrix)
     return smoothed(beside, field, 3)
 
 
-def grown(mask: Mask, beside: SparseMatrix, rings: int) -> Mask:
-    """A mask with ``rings`` more rings of neighbours."""
-    for _ in range(rings):
-        mask = mask | (beside @ mask.astype(np.float64) > 0.0)
-    return mask
-
-
 def area_ratio(upper: Doubles, lower: Doubles, triangles: Indices) -> Doubles:
     """``(T,)``: area of each lower triangle along the upper one's normal over that one's area."""
-    above, below = _areas(upper, triangles), _areas(lower, triangles)
+    above, below = doubled_areas(upper, triangles), doubled_areas(lower, triangles)
     return np.asarray((above * below).sum(axis=1) / np.maximum((above * above).sum(axis=1), 1e-12))
-
-
-def _areas(points: Doubles, triangles: Indices) -> Doubles:
-    a, b, c = (points[triangles[:, corner]] for corner in range(3))
-    return np.asarray(np.cross(b - a, c - a))

@@ -7,12 +7,11 @@ from typing import Any, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from agentface.conventions import SIDES, Doubles, Indices
+from agentface.conventions import SIDES, Indices
 from agentface.head.model import HeadModel
 from agentface.head.regions import REGIONS, REST
-from agentface.mesh.graph import SparseMatrix, adjacency, harmonic_weights, laplacian, rim_of
+from agentface.mesh.graph import Mask, adjacency, harmonic_weights, laplacian, rim_of
 
-Mask = npt.NDArray[np.bool_]
 _INSIDE, _WET, _EAR = 0.02, 0.5, 0.05
 _SEAM_RINGS = 4
 """Rings of the lips, from the seam, that the lips' own surface has."""
@@ -107,12 +106,3 @@ def carried_by(model: HeadModel, edges: Indices, where: Members) -> Carried:
         carriers=carriers[columns].astype(np.int32),
         weights=weights[rows, columns].astype(np.float32),
     )
-
-
-def smoothed(beside: SparseMatrix, field: Doubles, rounds: int, weight: float = 0.5) -> Doubles:
-    """A field ``(V,)`` or ``(V, k)`` that has gone ``rounds`` times ``weight`` of the way to the mean round each."""
-    count = np.maximum(np.asarray(beside.sum(1)), 1.0)
-    count = count if field.ndim > 1 else count.ravel()
-    for _ in range(rounds):
-        field = (1.0 - weight) * field + weight * (beside @ field) / count
-    return field

@@ -19,7 +19,16 @@ from agentface.mesh.smoothstep import smoothstep
 from agentface.parameters import COUNT, indices_of
 from agentface.tissue.lattice import Lattice
 from agentface.tissue.layers import HYPODERMIS
-from agentface.tissue.tissue_file import NAMES, TISSUE_FILE, LinearRow, MuscleRow, SheetRow, SphincterRow, TissueFile
+from agentface.tissue.tissue_file import (
+    NAMES,
+    TISSUE_FILE,
+    LinearRow,
+    MuscleRow,
+    SheetRow,
+    SphincterRow,
+    TissueFile,
+    row_and_side,
+)
 
 _TINY = 1e-9
 _SHORTEST_M = 1e-5
@@ -28,18 +37,17 @@ _LEAST = 1e-3
 """Of its strength: what a muscle must pull with somewhere."""
 
 
-def nodal_forces(model: HeadModel, lattice: Lattice, file: TissueFile | None = None) -> Doubles:
+def nodal_forces(model: HeadModel, lattice: Lattice) -> Doubles:
     """``(23, V, 3)``: the force of every muscle, fully contracted, on each node of the hypodermis.
 
-    ``file`` has other muscles than the lattice's own. Raises InvalidValueError for a muscle that pulls on nothing.
+    Raises InvalidValueError for a muscle that pulls on nothing.
     """
-    rows = (lattice.file if file is None else file).muscles
-    return np.stack([_force(model, lattice, rows, name) for name in NAMES])
+    return np.stack([_force(model, lattice, name) for name in NAMES])
 
 
-def _force(model: HeadModel, lattice: Lattice, rows: dict[str, MuscleRow], name: str) -> Doubles:
-    base, side = (name[:-2], name[-1]) if name[-2:] in ("_l", "_r") else (name, SIDES[0])
-    row = rows[base]
+def _force(model: HeadModel, lattice: Lattice, name: str) -> Doubles:
+    base, own = row_and_side(name)
+    row, side = lattice.file.muscles[base], own or SIDES[0]
     place = ("muscles", base)
     if not isinstance(row, SphincterRow):
         origin, insertion = (anchor_point(anchor, side, model.landmarks) for anchor in (row.origin, row.insertion))
@@ -117,7 +125,7 @@ class Drive:
         """The table ``moved_by`` of every muscle."""
         weights = np.zeros((len(NAMES), COUNT))
         for place, name in enumerate(NAMES):
-            base, side = (name[:-2], name[-1]) if name[-2:] in ("_l", "_r") else (name, None)
+            base, side = row_and_side(name)
             for muscle, share in file.muscles[base].moved_by.items():
                 indices = indices_of(muscle)
                 chosen = indices if side is None or len(indices) == 1 else (indices[SIDES.index(side)],)

@@ -10,6 +10,7 @@ from agentface.tissue.columns import Columns
 LONGER = 1.7
 """Of Newton's step a column: over-relaxation."""
 _PATIENCE, _LOST_MM = 60, 1e3
+_RISE = 0.2, 0.4, 0.6, 0.8
 _LAST = 4
 """Sweeps of plain steps that end a search: they take out what over-relaxation leaves swinging."""
 
@@ -46,15 +47,10 @@ def relax(
     return done, float(moved.max()) ** 0.5
 
 
-def gradually(columns: Columns, loads: Floats, steps: int = 5, positions: Floats | None = None) -> Floats:
-    """The equilibrium under ``loads``, raised from rest in ``steps``: all at once may fold the skin."""
-    there = columns.rest.copy() if positions is None else positions
-    for step in range(1, steps + 1):
-        relax(
-            columns,
-            there,
-            loads * np.float32(step / steps),
-            1e-2 if step < steps else 2e-5,
-            200 if step < steps else 4000,
-        )
+def gradually(columns: Columns, loads: Floats) -> Floats:
+    """The equilibrium under ``loads``, raised from rest step by step."""
+    there = columns.rest.copy()
+    for part in _RISE:
+        relax(columns, there, loads * np.float32(part), tolerance=1e-2, most=200)
+    relax(columns, there, loads, tolerance=2e-5, most=4000)
     return there

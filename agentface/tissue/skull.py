@@ -8,8 +8,7 @@ import numpy as np
 
 from agentface.conventions import Doubles, Floats
 from agentface.head.model import HeadModel
-from agentface.mesh.graph import SparseMatrix
-from agentface.tissue.members import smoothed
+from agentface.mesh.graph import SparseMatrix, smoothed
 from agentface.tissue.tissue_file import SkullTable
 
 _ROUNDS = 4

@@ -6,7 +6,7 @@ What a table holds by itself is checked here; what its names mean, and how numbe
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import Annotated, Literal, get_args
 
 from pydantic import Field
 
@@ -16,6 +16,7 @@ from agentface.head.muscles import Anchor, Territory
 
 TISSUE_FILE = "tissue.yaml"
 VolumeForm = Literal["energy", "printed", "signed", "epidermis"]
+FORMS: tuple[VolumeForm, ...] = get_args(VolumeForm)
 LARGEST_RHO: dict[str, float] = {"energy": 12.0, "printed": 1.0, "signed": 10.0, "epidermis": 16.0}
 """What each form of the volume force bears before it diverges; ``agentface bench tissue --volume`` shows it."""
 TISSUE_MUSCLES = (
@@ -30,6 +31,12 @@ NAMES: tuple[str, ...] = tuple(
     full for name in TISSUE_MUSCLES for full in ([name] if name == UNPAIRED else [f"{name}_{side}" for side in SIDES])
 )
 """The 23 muscles with their sides, in the order of forces and contractions."""
+
+
+def row_and_side(name: str) -> tuple[str, str | None]:
+    """The name of a muscle's row, and its side; None for the one in the middle."""
+    return (name, None) if name == UNPAIRED else (name[:-2], name[-1])
+
 
 _Stiffness = Annotated[float, Field(gt=0, le=100)]
 _Length = Annotated[float, Field(gt=0, le=5)]

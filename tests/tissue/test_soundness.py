@@ -16,13 +16,14 @@ from agentface.tissue.muscles import nodal_forces
 
 def with_row(lattice, name, **changes):
     file = lattice.file
-    return file.model_copy(update={"muscles": file.muscles | {name: file.muscles[name].model_copy(update=changes)}})
+    rows = file.muscles | {name: file.muscles[name].model_copy(update=changes)}
+    return dataclasses.replace(lattice, file=file.model_copy(update={"muscles": rows}))
 
 
 def test_a_muscle_of_no_length_is_told(model, lattice):
     end = lattice.file.muscles["risorius"].insertion
     with pytest.raises(InvalidValueError, match="a point apart from the origin") as caught:
-        nodal_forces(model, lattice, with_row(lattice, "risorius", origin=end))
+        nodal_forces(model, with_row(lattice, "risorius", origin=end))
     assert caught.value.place == Place("tissue.yaml", ("muscles", "risorius", "insertion"))
 
 
@@ -38,7 +39,7 @@ def test_a_muscle_of_no_length_is_told(model, lattice):
 def test_a_muscle_that_pulls_on_nothing_is_told(model, lattice, name, changes):
     """Its response would be 0, and the face's dynamics, which divide by it, no numbers at all."""
     with pytest.raises(InvalidValueError, match="pulls on some of the tissue") as caught:
-        nodal_forces(model, lattice, with_row(lattice, name, **changes))
+        nodal_forces(model, with_row(lattice, name, **changes))
     assert caught.value.place == Place("tissue.yaml", ("muscles", name))
 
 

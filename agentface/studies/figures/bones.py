@@ -14,14 +14,12 @@ import numpy as np
 from agentface.conventions import SIDES, Doubles, Indices
 from agentface.head.landmarks import Landmarks
 from agentface.head.model import HeadModel
-from agentface.mesh.graph import SparseMatrix, adjacency, edges_of, harmonic, laplacian
+from agentface.mesh.graph import SparseMatrix, adjacency, edges_of, grown, harmonic, laplacian, smoothed
 from agentface.mesh.normals import vertex_normals
 from agentface.mesh.refine import refine
 from agentface.mesh.smoothstep import smoothstep
 from agentface.studies.figures.solids import Scene
 from agentface.tissue.lattice import Lattice
-from agentface.tissue.layers import grown
-from agentface.tissue.members import smoothed
 
 BONE, JAW = np.array([236.0, 228.0, 208.0]), np.array([214.0, 186.0, 140.0])
 _DEEP, _TOOTH = np.array([96.0, 78.0, 64.0]), np.array([248.0, 246.0, 238.0])

@@ -5,19 +5,18 @@ Sets are of whole columns: a vertex of the skin and the two nodes under it.
 
 from __future__ import annotations
 
-import math
 from collections import deque
 from typing import NamedTuple
 
 import numpy as np
 
 from agentface.conventions import Doubles, Floats, Indices
+from agentface.mesh.graph import Mask
 from agentface.tissue.columns import Columns, coloured, new_forces, pack, packed, rings_of, unpacked
 from agentface.tissue.lattice import Lattice
-from agentface.tissue.members import Mask
 from agentface.tissue.relaxation import new_loads
 from agentface.tissue.solvers.equilibrium import equilibrium
-from agentface.tissue.solvers.semi_implicit import stable_step
+from agentface.tissue.solvers.semi_implicit import divided
 from agentface.tissue.tables import TissueTables
 
 THRESHOLD = 0.01
@@ -129,10 +128,8 @@ class Adaptive:
         self.group(np.maximum(contractions, self._contractions))
         if self._expression is None:
             return
-        count = max(1, math.ceil(dt / stable_step(self._tables) - 1e-9))
-        start, change = self._contractions, contractions - self._contractions
-        for index in range(1, count + 1 if dt > 0.0 else 1):
-            self.iterate(start + index / count * change, dt / count)
+        for there, part in divided(self._tables, self._contractions, contractions, dt):
+            self.iterate(there, part)
         self._contractions = contractions.copy()
         self.show()
 

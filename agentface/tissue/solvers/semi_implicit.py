@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 
 import numpy as np
 
@@ -18,6 +19,13 @@ STABLE = 0.12
 def stable_step(tables: TissueTables) -> float:
     """The longest time step, in s, that is taken; longer ones are divided."""
     return STABLE * math.sqrt(tables.mass)
+
+
+def divided(tables: TissueTables, before: Doubles, after: Doubles, dt: float) -> Iterator[tuple[Doubles, float]]:
+    """The contractions ``(23,)`` and the time of each of the equal steps that ``dt`` s take; none for no time."""
+    count = max(1, math.ceil(dt / stable_step(tables) - 1e-9))
+    for index in range(1, count + 1 if dt > 0.0 else 1):
+        yield before + index / count * (after - before), dt / count
 
 
 class SemiImplicit:
@@ -41,10 +49,8 @@ class SemiImplicit:
 
     def step(self, contractions: Doubles, dt: float) -> None:
         """Go on by ``dt`` s, in as many equal steps as stability asks for."""
-        count = max(1, math.ceil(dt / stable_step(self._tables) - 1e-9))
-        start, change = self._contractions, contractions - self._contractions
-        for index in range(1, count + 1 if dt > 0.0 else 1):
-            self.iterate(start + index / count * change, dt / count)
+        for there, part in divided(self._tables, self._contractions, contractions, dt):
+            self.iterate(there, part)
         self._contractions = contractions.copy()
 
     def iterate(self, contractions: Doubles, dt: float) -> None:

@@ -8,8 +8,8 @@ from agentface.conventions import Floats
 from agentface.deform.lanes import LANES
 from agentface.deform.simd import load, store
 from agentface.kernel import kernel
-from agentface.tissue.columns import NODES, Columns
-from agentface.tissue.forces_compiled import STATES, net_forces
+from agentface.tissue.columns import NODES, STATES, Columns
+from agentface.tissue.forces_compiled import net_forces
 
 
 @kernel(error_model="numpy", fastmath=True)

@@ -1,31 +1,17 @@
 from __future__ import annotations
 
 import json
-import shutil
 
 import pytest
-from click.testing import CliRunner
 
-from agentface.cli import cli
 from agentface.head.model import load_model
 from agentface.head.muscles import read_muscles
-from agentface.resources import face_folder, face_names
+from agentface.resources import face_names
 from agentface.studies.calibration import calibrate as fitting
 from agentface.studies.calibration.calibrate import anatomy_file, table
 from agentface.studies.calibration.limits import END, begin_of
+from tests.calibrated import call
 from tests.heads import head_model
-
-
-def call(*arguments, code=0):
-    result = CliRunner().invoke(cli, ["calibrate", *map(str, arguments)], prog_name="agentface")
-    assert result.exit_code == code, result.output
-    assert not result.exception or isinstance(result.exception, SystemExit)
-    return result
-
-
-@pytest.fixture
-def face(tmp_path):
-    return shutil.copytree(face_folder("onyx"), tmp_path / "face")
 
 
 @pytest.fixture

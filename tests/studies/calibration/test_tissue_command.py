@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import shutil
 
 import pytest
 from click.testing import CliRunner
@@ -11,27 +10,19 @@ from click.testing import CliRunner
 from agentface.cli import cli
 from agentface.errors import DataError
 from agentface.face import Face
-from agentface.resources import face_folder
 from agentface.studies.calibration import fits
 from agentface.studies.calibration.action_units import load_action_units
 from agentface.studies.calibration.agreement import Agreement
 from agentface.tissue.reading import anatomy_file, read_tissue
 from agentface.tissue.tissue_file import TISSUE_MUSCLES
+from tests import calibrated
 
 FITTED = 4.25
 """The strength that the quick fit finds for risorius."""
 
 
 def call(*arguments, code=0):
-    result = CliRunner().invoke(cli, ["calibrate", *map(str, arguments), "--deformer", "tissue"], prog_name="agentface")
-    assert result.exit_code == code, result.output
-    assert not result.exception or isinstance(result.exception, SystemExit)
-    return result
-
-
-@pytest.fixture
-def face(tmp_path):
-    return shutil.copytree(face_folder("onyx"), tmp_path / "face")
+    return calibrated.call(*arguments, "--deformer", "tissue", code=code)
 
 
 @pytest.fixture
