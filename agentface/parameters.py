@@ -20,11 +20,12 @@ from agentface.conventions import SIDES, Floats, check_range
 from agentface.errors import InvalidValueError, UnknownNameError
 from agentface.named_array import NamedArray
 
-Kind = Literal["vector", "pseudo", "jaw", "gaze", "head"]
-"""What moves: a vector muscle, a muscle of another form, the jaw, the eyes, the head."""
-Unit = Literal["contraction", "opening", "rad"]
-"""Contractions and openings are 0..1, at 0 where the face is at rest; angles have a sign."""
-Group = Literal["brow", "eyes", "nose and cheek", "mouth", "jaw", "gaze", "head"]
+Kind = Literal["vector", "pseudo", "morph", "jaw", "gaze", "head"]
+"""What moves: a vector muscle, a muscle of another form, skin by a shape (``morphs.yaml``), the jaw, eyes, the head."""
+Unit = Literal["contraction", "opening", "share", "rad"]
+"""Contractions and openings are 0..1, at 0 where the face is at rest. A share is that of a whole movement, -1 of the
+opposite one. Angles have a sign, too."""
+Group = Literal["brow", "eyes", "nose and cheek", "mouth", "jaw", "ears", "gaze", "head"]
 GROUPS: tuple[Group, ...] = get_args(Group)
 """From the top of the face down, and then what turns."""
 Way = Literal["replace", "max", "add", "scale"]
@@ -52,6 +53,14 @@ def _vector(group: Group, description: str) -> _Row:
 
 def _pseudo(group: Group, description: str, *, paired: bool = True) -> _Row:
     return _Row("pseudo", group, description, paired)
+
+
+def _morph(group: Group, description: str, *, paired: bool = True) -> _Row:
+    return _Row("morph", group, description, paired)
+
+
+def _share(group: Group, description: str, *, paired: bool = True, kind: Kind = "morph", low: float = -1.0) -> _Row:
+    return _Row(kind, group, description, paired, "share", low, way="add")
 
 
 def _angle(kind: Literal["gaze", "head"], low_deg: float, high_deg: float, description: str) -> _Row:
@@ -99,6 +108,24 @@ _TABLE: dict[str, _Row] = {
     "head_pitch": _angle("head", -60, 60, "the head looks up"),
     "head_roll": _angle("head", -50, 50, "the head tilts to its left"),
     "gaze_vergence": _angle("gaze", -10, 25, "each eye turns inward"),
+    "orbicularis_oris_press_upper": _morph("mouth", "orbicularis oris, upper lip: presses a half of it (AU 24)"),
+    "orbicularis_oris_press_lower": _morph("mouth", "orbicularis oris, lower lip: presses a half of it (AU 24)"),
+    "orbicularis_oris_funnel_upper": _morph("mouth", "orbicularis oris, upper lip: turns a half of it out (AU 22)"),
+    "orbicularis_oris_funnel_lower": _morph("mouth", "orbicularis oris, lower lip: turns a half of it out (AU 22)"),
+    "orbicularis_oris_roll_upper": _share("mouth", "orbicularis oris, upper lip: rolls half of it in (AU 28), or out"),
+    "orbicularis_oris_roll_lower": _share("mouth", "orbicularis oris, lower lip: rolls half of it in (AU 28), or out"),
+    "mouth_shrug_upper": _morph("mouth", "lifts the upper lip towards the nose", paired=False),
+    "mouth_shrug_lower": _morph("mouth", "lifts the lower lip over the upper one (AU 17)", paired=False),
+    "buccinator": _morph("mouth", "draws the lip corner back against the teeth: the dimple (AU 14)"),
+    "mouth_shift": _share("mouth", "the mouth goes to the person's left", paired=False),
+    "cheek_puff": _share("nose and cheek", "blows the cheek up (AU 34), or sucks it in (AU 35)"),
+    "nostril_flare": _share("nose and cheek", "widens the nostril (AU 38), or narrows it (AU 39)"),
+    "nose_raise": _share("nose and cheek", "the tip of the nose goes up", paired=False),
+    "nose_bend": _share("nose and cheek", "the tip of the nose goes to the person's left", paired=False),
+    "jaw_thrust": _share("jaw", "thrusts the jaw forward (AU 29), or draws it back", paired=False, kind="jaw"),
+    "jaw_shift": _share("jaw", "the jaw goes to the person's left (AU 30)", paired=False, kind="jaw"),
+    "ear_raise": _share("ears", "auricularis superior: raises the ear, or lowers it"),
+    "ear_back": _share("ears", "auricularis posterior: draws the ear back, or forward"),
 }
 
 
@@ -136,6 +163,11 @@ class Parameter:
     def contracts(self) -> bool:
         """Whether it is a muscle, or the jaw: something that is held between 0, at rest, and 1."""
         return self.unit in _FRACTIONS
+
+    @property
+    def morphs(self) -> bool:
+        """Whether the face's ``morphs.yaml`` says how it moves the skin."""
+        return self.kind == "morph" or (self.kind == "jaw" and self.unit == "share")
 
     @property
     def bounds(self) -> tuple[float, float]:
@@ -240,7 +272,7 @@ def check_poses(values: Floats) -> None:
 def _refusal(values: Floats, before: str = "") -> InvalidValueError:
     index = int(np.argmin((values >= LOW) & (values <= HIGH)))
     known, got = PARAMETERS[index], float(values[index])
-    what, unit = ("angle", " rad") if known.unit == "rad" else ("contraction", "")
+    what, unit = ("angle", " rad") if known.unit == "rad" else (known.unit, "")
     expected = f"a number in {known.low:g}..{known.high:g}{unit}" if np.isfinite(got) else "a finite number"
     return InvalidValueError(f"{before}{what} of {known.name}", expected, got)
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 from enum import IntEnum
 
 from agentface.conventions import Floats
-from agentface.deform import midpoints
+from agentface.deform import midpoints, morphs
 from agentface.deform.eyes import eyelids
 from agentface.deform.mouth import contact, jaw, lips
 from agentface.deform.muscles import limits, squash, volumes
@@ -24,9 +24,10 @@ class Stage(IntEnum):
     EYELIDS = 3
     JAW = 4
     LIPS = 5
-    CONTACT = 6
-    SQUASH_BY_LIDS_AND_LIPS = 7
-    MIDPOINTS = 8
+    MORPHS = 6
+    CONTACT = 7
+    SQUASH_BY_LIDS_AND_LIPS = 8
+    MIDPOINTS = 9
 
 
 def deform(  # noqa: C901  # a list of stages, in the one form that numba takes
@@ -46,6 +47,8 @@ def deform(  # noqa: C901  # a list of stages, in the one form that numba takes
             jaw.apply(tables.jaw, values, points)
         elif stage == Stage.LIPS:
             lips.surface(tables.lips, points)
+        elif stage == Stage.MORPHS:
+            morphs.apply(tables.morphs, values, points)
         elif stage == Stage.CONTACT:
             contact.apply(tables.contact, values, points)
         elif stage == Stage.SQUASH_BY_LIDS_AND_LIPS:

@@ -12,6 +12,7 @@ import numpy as np
 
 from agentface.conventions import Doubles, Floats
 from agentface.deform import midpoints_compiled as midpoints  # noqa: F401  # the twin's names
+from agentface.deform import morphs_compiled as morphs  # noqa: F401
 from agentface.deform import order
 from agentface.deform.eyes import eyelids_compiled as eyelids  # noqa: F401
 from agentface.deform.finish.order import FinishStage

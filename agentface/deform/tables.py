@@ -8,12 +8,13 @@ from typing import NamedTuple
 import numpy as np
 
 from agentface.conventions import Floats
-from agentface.deform import creases, midpoints
+from agentface.deform import creases, midpoints, morphs
 from agentface.deform.eyes import eyelids
 from agentface.deform.eyes.eyelids import EyelidsTables
 from agentface.deform.finish import order as finish
 from agentface.deform.finish.order import FinishTables
 from agentface.deform.midpoints import MidpointTables
+from agentface.deform.morphs import MorphTables
 from agentface.deform.mouth import contact, jaw, lips
 from agentface.deform.mouth.contact import ContactTables
 from agentface.deform.mouth.jaw import JawTables
@@ -39,6 +40,7 @@ class SkinTables(NamedTuple):
     eyelids: EyelidsTables
     volumes: VolumeTables
     jaw: JawTables
+    morphs: MorphTables
     contact: ContactTables
     creases: SquashTables
     midpoints: MidpointTables
@@ -82,6 +84,7 @@ def _skin(model: HeadModel) -> SkinTables:
         eyelids=of_eyelids,
         volumes=volumes.prepare(model),
         jaw=jaw.prepare(model, follow, (of_lips.patch, of_lips.controls, of_lips.weight, of_lips.control_rest)),
+        morphs=morphs.prepare(model, of_eyelids),
         contact=contact.prepare(model),
         creases=creases.prepare(model, of_eyelids, of_lips),
         midpoints=midpoints.prepare(model),

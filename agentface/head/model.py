@@ -18,6 +18,7 @@ from agentface.conventions import SIDES, Floats, Indices, check_fraction
 from agentface.errors import DataError, Fault, InvalidValueError
 from agentface.head import asymmetry as own
 from agentface.head.landmarks import Landmarks, place_landmarks, read_landmarks
+from agentface.head.morphs import MorphsFile, PlacedMorph, place_morphs, read_morphs
 from agentface.head.muscle_set import MuscleSet
 from agentface.head.muscles import Borders, MusclesFile, place_muscles, read_muscles
 from agentface.head.regions import Regions, load_regions
@@ -81,6 +82,7 @@ TABLES: dict[str, Callable[[Path, MeshArrays], Any]] = {
     MUSCLES_FILE: lambda path, _: read_muscles(path),
     "wrinkles.yaml": lambda path, _: read_wrinkles(path),
     "volumes.yaml": lambda path, _: read_volumes(path),
+    "morphs.yaml": lambda path, _: read_morphs(path),
     "asymmetry.yaml": lambda path, _: own.read_asymmetry(path),
 }
 """The tables of a face's folder, and how each is read and checked beside the face's skin."""
@@ -107,6 +109,7 @@ class HeadModel:
         muscles_file: the table of the vector muscles.
         wrinkles_file: the table of the trains of wrinkles that follow no single vector muscle.
         volumes_file: the table of the volumes that muscles gather or hollow.
+        morphs_file: the table of what moves the skin by shapes.
         own_uv: ``(V, 2)`` float32 0..1, the texture coordinates that the file has, or None.
         gains: ``(COUNT,)`` float32, what a side makes of a contraction that an emotion asks of both.
         part_moves: ``(3,)`` m by name: how far a part's centre is off that of the symmetric face.
@@ -131,6 +134,7 @@ class HeadModel:
     muscles_file: MusclesFile
     wrinkles_file: WrinklesFile
     volumes_file: VolumesFile
+    morphs_file: MorphsFile
     own_uv: Floats | None
     gains: Floats
     part_moves: dict[str, Floats]
@@ -156,6 +160,11 @@ class HeadModel:
         movable = 1.0 - np.clip(2.0 * self.material[:, 1:3].max(axis=1), 0.0, 1.0)
         skin = self.vertices, self.normals
         return place_volumes(self.volumes_file, self.landmarks, self.borders, skin, movable)
+
+    @cached_property
+    def morphs(self) -> tuple[PlacedMorph, ...]:
+        """What the parameters that are no single muscle do to the skin."""
+        return place_morphs(self)
 
     @cached_property
     def trains(self) -> tuple[PlacedTrain, ...]:
@@ -288,6 +297,7 @@ def _read(folder: Path, muscles: MusclesFile | None, asymmetry: float) -> HeadMo
         muscles_file=muscles or tables[MUSCLES_FILE],
         wrinkles_file=tables["wrinkles.yaml"],
         volumes_file=tables["volumes.yaml"],
+        morphs_file=tables["morphs.yaml"],
         own_uv=texture_coordinates(skin),
         gains=own.gains_of(tables["asymmetry.yaml"], asymmetry),
         part_moves=part_moves,

@@ -9,13 +9,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated, Any, Self
 
 import numpy as np
 from pydantic import Field, model_validator
 
 from agentface.config import Document, Table
-from agentface.conventions import SIDES, Floats, Indices
+from agentface.conventions import SIDES, Doubles, Floats, Indices
 from agentface.errors import did_you_mean
 from agentface.head.landmarks import LANDMARKS, PAIRED_LANDMARKS, Landmarks
 from agentface.head.muscles import Anchor, Borders, Territory, anchor_point
@@ -28,15 +28,14 @@ _Way = Annotated[float, Field(ge=-0.3, le=0.3)]
 _LOWEST = 1e-6  # m, what is not worth a store
 
 
-class VolumeRow(Territory):
-    """One pair of volumes: an ellipsoid of skin that moves, most in its middle ``centre`` and not at all at its rim.
+class Ellipsoid(Territory):
+    """Skin that moves, most in its middle ``centre`` and not at all at its rim.
 
-    ``muscles`` and their shares: it moves as far as the sum of their contractions times shares, 0..1. ``radii`` are
-    those of the ellipsoid [lateral, up, forward], turned by ``tilt_deg`` about the forward axis (positive: the upper
-    end to the nose). It goes ``height`` along the skin's normal, out or (negative) in, and ``way``.
+    ``radii`` are those of the ellipsoid [lateral, up, forward], turned by ``tilt_deg`` about the forward axis
+    (positive: the upper end to the nose). It goes ``height`` along the skin's normal, out or (negative) in, and
+    ``way``.
     """
 
-    muscles: Annotated[dict[str, _Share], Field(min_length=1)]
     centre: Anchor
     radii: Annotated[list[_Radius], Field(min_length=3, max_length=3)]
     tilt_deg: Annotated[float, Field(ge=-90, le=90)] = 0.0
@@ -44,10 +43,27 @@ class VolumeRow(Territory):
     way: Annotated[list[_Way], Field(min_length=3, max_length=3)] = [0.0, 0.0, 0.0]
 
     @model_validator(mode="after")
-    def _moving(self) -> VolumeRow:
+    def _moving(self) -> Self:
         if not (self.height or any(self.way)):
             raise ValueError("expected a height or a way that is not 0")
         return self
+
+    def field(self, skin: tuple[Floats, Floats], landmarks: Landmarks, borders: Borders, side: str) -> Doubles:
+        """``(V, 3)`` m: how far it moves the ``skin``, vertices ``(V, 3)`` m and unit normals, on side l or r."""
+        (vertices, normals), unit = skin, landmarks.eye_separation
+        sign = 1.0 if side == SIDES[0] else -1.0
+        weight = borders.reach(self, unit) * _inside(self, vertices, landmarks, side)
+        way = self.height * normals + np.array(self.way) * [sign, 1.0, 1.0]
+        return np.asarray(unit * weight[:, None] * way, np.float64)
+
+
+class VolumeRow(Ellipsoid):
+    """One pair of volumes: an ellipsoid of skin that muscles move.
+
+    ``muscles`` and their shares: it moves as far as the sum of their contractions times shares, 0..1.
+    """
+
+    muscles: Annotated[dict[str, _Share], Field(min_length=1)]
 
 
 class VolumesFile(Table):
@@ -87,8 +103,18 @@ def read_volumes(path: str | Path) -> VolumesFile:
 
 
 def _check_row(document: Document, where: tuple[str, str], row: dict[str, Any]) -> None:
+    check_names(document, where, row, {"muscles": ("a muscle without side", MUSCLES)})
+
+
+def check_names(
+    document: Document, where: tuple[str | int, ...], row: dict[str, Any], more: dict[str, tuple[str, tuple[str, ...]]]
+) -> None:
+    """Note each unknown region and landmark of an ellipsoid's ``row``, and names under other keys that ``more`` lacks.
+
+    ``more`` has for a key what is named there and the names that are known.
+    """
     named: dict[str, tuple[str, tuple[str, ...]]] = {
-        "muscles": ("a muscle without side", MUSCLES),
+        **more,
         "regions": ("a region", (*HALF_REGIONS, *SUB_REGIONS)),
         "not_regions": ("a region", (*HALF_REGIONS, *SUB_REGIONS)),
     }
@@ -121,15 +147,11 @@ def place_volumes(
         skin: its vertices ``(V, 3)`` m and unit normals at rest.
         movable: ``(V,)`` 0..1, how far any volume may move a vertex.
     """
-    (vertices, normals), unit = skin, landmarks.eye_separation
     placed = []
     for name, row in file.volumes.items():
         for side in SIDES:
-            sign = 1.0 if side == SIDES[0] else -1.0
             shares = {index: share for muscle, share in row.muscles.items() for index in _indices(muscle, side)}
-            weight = movable * borders.reach(row, unit) * _inside(row, vertices, landmarks, side)
-            way = row.height * normals + np.array(row.way) * [sign, 1.0, 1.0]
-            ways = (unit * weight[:, None] * way).astype(np.float32)
+            ways = (movable[:, None] * row.field(skin, landmarks, borders, side)).astype(np.float32)
             chosen = np.flatnonzero(np.abs(ways).max(axis=1) > _LOWEST).astype(np.int32)
             placed.append(PlacedVolume(f"{name}_{side}", shares, chosen, np.ascontiguousarray(ways[chosen])))
     return tuple(placed)
@@ -140,7 +162,7 @@ def _indices(muscle: str, side: str) -> tuple[int, ...]:
     return (indices[SIDES.index(side)],) if len(indices) > 1 else indices
 
 
-def _inside(row: VolumeRow, vertices: Floats, landmarks: Landmarks, side: str) -> Floats:
+def _inside(row: Ellipsoid, vertices: Floats, landmarks: Landmarks, side: str) -> Floats:
     """``(V,)``: (1 - d^2)^2 with d the distance from the centre as a part of the ellipsoid's radius there."""
     sign, tilt = (1.0 if side == SIDES[0] else -1.0), np.radians(row.tilt_deg)
     away = (vertices - anchor_point(row.centre, side, landmarks)) * [sign, 1.0, 1.0]

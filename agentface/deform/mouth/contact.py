@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from agentface.conventions import Doubles, Floats, Indices
+from agentface.deform.morphs import JawSlides, jaw_slide, jaw_slides
 from agentface.deform.mouth.dental_arch import arch_distance, fit_arch
 from agentface.deform.mouth.lip_grid import INNER_RINGS, SEAM_RING, LipGrid, column_places, lip_grid
 from agentface.head.model import HeadModel
@@ -49,7 +50,7 @@ class ContactTables(NamedTuple):
         kept: ``(2, K)`` m, how near each may come to the upper and the lower arch; negative: as near as it likes.
         softness: ``(2, K)`` m, over which the push sets in.
         arch: ``(2, 4)``, the numbers of both :class:`agentface.deform.mouth.dental_arch.Arch`.
-        hinge, widest, jaw: the turn of the lower arch.
+        hinge, widest, jaw, slides: the turn of the lower arch, and how far it slides before.
         press, shut_from: where press stands in a pose, and the level from which it shuts the lips.
     """
 
@@ -69,6 +70,7 @@ class ContactTables(NamedTuple):
     hinge: Floats
     widest: float
     jaw: int
+    slides: JawSlides
     press: int
     shut_from: float
 
@@ -102,6 +104,7 @@ def prepare(model: HeadModel) -> ContactTables:
         hinge=np.array(model.jaw.pivot[1:], np.float32),
         widest=math.radians(model.jaw.widest_deg),
         jaw=indices_of("jaw_open")[0],
+        slides=jaw_slides(model),
         press=indices_of("orbicularis_oris_press")[0],
         shut_from=model.lips.orbicularis_oris.roll_from,
     )
@@ -121,7 +124,9 @@ def apply(tables: ContactTables, values: Floats, points: Floats) -> None:
     places = points[tables.vertex]
     up, forward = (places[:, 1:] - tables.hinge).T
     places[:, 1] = tables.hinge[0] + cosine * up + sine * forward
-    places[:, 2] = tables.hinge[1] - sine * up + cosine * forward
+    ahead, aside = jaw_slide(tables.slides, values)
+    places[:, 0] -= np.float32(aside)
+    places[:, 2] = tables.hinge[1] - sine * up + cosine * forward - np.float32(ahead)
     across, ahead = _push_out(tables, 1, places).T
     points[tables.vertex] += np.stack([across, -sine * ahead, cosine * ahead], axis=1)
     for _ in range(PARTINGS):

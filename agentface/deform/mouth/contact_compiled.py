@@ -9,6 +9,7 @@ import numpy as np
 
 from agentface.conventions import Floats, Indices
 from agentface.deform.lanes import LANES
+from agentface.deform.morphs_compiled import jaw_slide
 from agentface.deform.mouth.contact import CORNER, FARTHEST, PARTINGS, ROUNDS, SPREAD, STEEP, ContactTables
 from agentface.deform.simd import choose, larger, load, smaller, splat, store
 from agentface.kernel import kernel
@@ -35,6 +36,7 @@ def apply(tables: ContactTables, values: Floats, points: Floats) -> None:
     angle = np.float32(tables.widest * values[tables.jaw])
     cosine, sine = np.float32(math.cos(angle)), np.float32(math.sin(angle))
     hinge_y, hinge_z = tables.hinge[0], tables.hinge[1]
+    forth, aside = jaw_slide(tables.slides, values)
     for k in range(tables.vertex.shape[0]):
         vertex = tables.vertex[k]
         across, ahead = _push(tables, 0, k, points[vertex, 0], points[vertex, 1], points[vertex, 2])
@@ -42,8 +44,8 @@ def apply(tables: ContactTables, values: Floats, points: Floats) -> None:
         points[vertex, 2] += ahead
         up, forward = points[vertex, 1] - hinge_y, points[vertex, 2] - hinge_z
         y = hinge_y + cosine * up + sine * forward
-        z = hinge_z - sine * up + cosine * forward
-        across, ahead = _push(tables, 1, k, points[vertex, 0], y, z)
+        z = hinge_z - sine * up + cosine * forward - np.float32(forth)
+        across, ahead = _push(tables, 1, k, points[vertex, 0] - np.float32(aside), y, z)
         points[vertex, 0] += across
         points[vertex, 1] -= sine * ahead
         points[vertex, 2] += cosine * ahead

@@ -12,6 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from agentface.conventions import Doubles, Floats, Indices
+from agentface.deform.morphs import WHOLE_LIPS
 from agentface.deform.mouth.lip_grid import SEAM_RING, lip_grid
 from agentface.deform.mouth.lip_skirt import skirt as lip_skirt
 from agentface.deform.mouth.lip_surface import COLUMNS, ROWS, control_places, fit, grid_places, moved_with, weights
@@ -107,9 +108,7 @@ def prepare(model: HeadModel) -> LipTables:
         skirt=skirt,
         skirt_index=skirt_index,
         skirt_weight=skirt_weight.astype(np.float32),
-        parameters=np.array(
-            [indices_of(name)[0] for name in ("orbicularis_oris_pucker", "orbicularis_oris_press")], np.int32
-        ),
+        parameters=np.array([indices_of(name)[0] for name in WHOLE_LIPS], np.int32),
         width=float(_width(control)),
         roll_from=model.lips.orbicularis_oris.roll_from,
         shift=_stack([field.shift for field in fields]),

@@ -29,6 +29,8 @@ _TITLES = {
     "wrinkles.yaml": "The trains of wrinkles, relative to the landmarks; lengths in eye separations, one entry a pair.",
     "volumes.yaml": "Skin and flesh that muscles gather or hollow, relative to the landmarks; lengths in eye "
     "separations, one entry a pair.",
+    "morphs.yaml": "What moves the skin by a shape: the artists', ellipsoids, the ear's way; lengths in eye "
+    "separations, the left side of a pair.",
     "eyes.yaml": "The left eyeball in metres (the right one is its mirror image) and how far the eyes turn.",
     "jaw.yaml": "The jaw's hinge in metres (its axis is parallel to X) and its widest opening.",
 }
@@ -85,6 +87,7 @@ def _tables(topology: HeadTopology, head: Head, recipe: Recipe, parts: PartsFile
         "eyelids.yaml": {"rings": lids, **parts.eyelids.model_dump()},
         "wrinkles.yaml": {"trains": {name: row.model_dump() for name, row in parts.wrinkles.items()}},
         "volumes.yaml": {"volumes": {name: row.model_dump() for name, row in parts.volumes.items()}},
+        "morphs.yaml": {"morphs": {name: row.model_dump(exclude_defaults=True) for name, row in parts.morphs.items()}},
         "eyes.yaml": {"centre": centre, "radius": round(head.eye_radius, 6), **parts.eyes.model_dump()},
         "jaw.yaml": {
             "pivot": [round(float(METRES * value), 6) for value in pivot],

@@ -8,6 +8,7 @@ from agentface.config import Table
 from agentface.head.build.jaw import JawShares
 from agentface.head.lids import LidMotion
 from agentface.head.model import EyeHole
+from agentface.head.morphs import MorphRow
 from agentface.head.orbicularis_oris import LipsMotion
 from agentface.head.regions import Limits
 from agentface.head.volumes import VolumeRow
@@ -26,3 +27,4 @@ class PartsFile(Table):
     eyes: EyeHole
     wrinkles: dict[str, TrainRow]
     volumes: dict[str, VolumeRow]
+    morphs: dict[str, MorphRow]
