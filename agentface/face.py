@@ -20,7 +20,7 @@ from agentface.emotion.state import EMOTIONS, NEUTRAL, EmotionState, canonical_o
 from agentface.errors import InvalidValueError
 from agentface.head.model import HeadModel, load_model
 from agentface.motion.mixer import Mixer
-from agentface.parameters import CONTRACTIONS, MUSCLES, FacePose
+from agentface.parameters import CONTRACTIONS, HELD, MUSCLES, FacePose
 from agentface.requests import (
     FADE_S,
     GAZE_FADE_S,
@@ -297,9 +297,10 @@ class Face:
     def status(self) -> dict[str, Any]:
         """What the face is doing now, JSON-ready.
 
-        ``face``; ``emotion``, the six target intensities; ``shown``, the ``emotion`` and the ``contractions`` as
-        drawn now; ``speech``, null while the face does not speak; ``gaze_deg``, yaw and pitch; ``frame_ms``, what
-        the last step took; ``messages`` understood; ``errors``, the count of malformed, unknown and rejected ones.
+        ``face``; ``emotion``, the six target intensities; ``shown``, the ``emotion``, the ``contractions`` and the
+        ``shares`` of signed movements as drawn now; ``speech``, null while the face does not speak; ``gaze_deg``, yaw
+        and pitch; ``frame_ms``, what the last step took; ``messages`` understood; ``errors``, the count of malformed,
+        unknown and rejected ones.
         """
         emotion, pose = self.channels.emotion, self.pose
         shown = zip(emotion.target, emotion.intensities.value.tolist(), strict=True)
@@ -309,6 +310,7 @@ class Face:
             "shown": {
                 "emotion": {name: round(value, 4) for name, value in shown},
                 "contractions": {name: round(pose[name], 4) for name in CONTRACTIONS},
+                "shares": {name: round(pose[name], 4) for name in HELD if name not in CONTRACTIONS},
             },
             "speech": None,
             "gaze_deg": [round(math.degrees(pose[name]), 3) for name in ("gaze_yaw", "gaze_pitch")],

@@ -45,6 +45,7 @@ class _Row(NamedTuple):
     low: float = 0.0
     high: float = 1.0
     way: Way = "max"
+    sideways: bool = False
 
 
 def _vector(group: Group, description: str) -> _Row:
@@ -59,14 +60,18 @@ def _morph(group: Group, description: str, *, paired: bool = True) -> _Row:
     return _Row("morph", group, description, paired)
 
 
-def _share(group: Group, description: str, *, paired: bool = True, kind: Kind = "morph", low: float = -1.0) -> _Row:
-    return _Row(kind, group, description, paired, "share", low, way="add")
+def _share(
+    group: Group, description: str, *, paired: bool = True, kind: Kind = "morph", sideways: bool = False
+) -> _Row:
+    return _Row(kind, group, description, paired, "share", -1.0, way="add", sideways=sideways)
 
 
-def _angle(kind: Literal["gaze", "head"], low_deg: float, high_deg: float, description: str) -> _Row:
+def _angle(
+    kind: Literal["gaze", "head"], low_deg: float, high_deg: float, description: str, *, sideways: bool = False
+) -> _Row:
     # what a pose, which is float32, gives back at its limit, it takes again
     low, high = (float(np.float32(math.radians(limit))) for limit in (low_deg, high_deg))
-    return _Row(kind, kind, description, paired=False, unit="rad", low=low, high=high, way="add")
+    return _Row(kind, kind, description, paired=False, unit="rad", low=low, high=high, way="add", sideways=sideways)
 
 
 _TABLE: dict[str, _Row] = {
@@ -102,11 +107,11 @@ _TABLE: dict[str, _Row] = {
     "orbicularis_oris_pucker": _pseudo("mouth", "orbicularis oris, puckering the lips (AU 18)", paired=False),
     "orbicularis_oris_press": _pseudo("mouth", "orbicularis oris, pressing the lips together (AU 24)", paired=False),
     "jaw_open": _Row("jaw", "jaw", "drops the jaw (AU 26, 27)", paired=False, unit="opening"),
-    "gaze_yaw": _angle("gaze", -50, 50, "the eyes turn to the person's left"),
+    "gaze_yaw": _angle("gaze", -50, 50, "the eyes turn to the person's left", sideways=True),
     "gaze_pitch": _angle("gaze", -40, 40, "the eyes turn upward"),
-    "head_yaw": _angle("head", -80, 80, "the head turns to its left"),
+    "head_yaw": _angle("head", -80, 80, "the head turns to its left", sideways=True),
     "head_pitch": _angle("head", -60, 60, "the head looks up"),
-    "head_roll": _angle("head", -50, 50, "the head tilts to its left"),
+    "head_roll": _angle("head", -50, 50, "the head tilts to its left", sideways=True),
     "gaze_vergence": _angle("gaze", -10, 25, "each eye turns inward"),
     "orbicularis_oris_press_upper": _morph("mouth", "orbicularis oris, upper lip: presses a half of it (AU 24)"),
     "orbicularis_oris_press_lower": _morph("mouth", "orbicularis oris, lower lip: presses a half of it (AU 24)"),
@@ -117,13 +122,13 @@ _TABLE: dict[str, _Row] = {
     "mouth_shrug_upper": _morph("mouth", "lifts the upper lip towards the nose", paired=False),
     "mouth_shrug_lower": _morph("mouth", "lifts the lower lip over the upper one (AU 17)", paired=False),
     "buccinator": _morph("mouth", "draws the lip corner back against the teeth: the dimple (AU 14)"),
-    "mouth_shift": _share("mouth", "the mouth goes to the person's left", paired=False),
+    "mouth_shift": _share("mouth", "the mouth goes to the person's left", paired=False, sideways=True),
     "cheek_puff": _share("nose and cheek", "blows the cheek up (AU 34), or sucks it in (AU 35)"),
     "nostril_flare": _share("nose and cheek", "widens the nostril (AU 38), or narrows it (AU 39)"),
     "nose_raise": _share("nose and cheek", "the tip of the nose goes up", paired=False),
-    "nose_bend": _share("nose and cheek", "the tip of the nose goes to the person's left", paired=False),
+    "nose_bend": _share("nose and cheek", "the tip of the nose goes to the person's left", paired=False, sideways=True),
     "jaw_thrust": _share("jaw", "thrusts the jaw forward (AU 29), or draws it back", paired=False, kind="jaw"),
-    "jaw_shift": _share("jaw", "the jaw goes to the person's left (AU 30)", paired=False, kind="jaw"),
+    "jaw_shift": _share("jaw", "the jaw goes to the person's left (AU 30)", paired=False, kind="jaw", sideways=True),
     "ear_raise": _share("ears", "auricularis superior: raises the ear, or lowers it"),
     "ear_back": _share("ears", "auricularis posterior: draws the ear back, or forward"),
 }
@@ -144,6 +149,7 @@ class Parameter:
         partner: the same on the other side of the face; None in the middle.
         group: the part of the face to which a user would look for it.
         way: how a channel's value is blended with that of the others, where ``rules/conflicts.yaml`` says nothing else.
+        sideways: whether it goes to the person's left where it is positive: mirrored, it has the other sign.
         description: what it does.
     """
 
@@ -157,12 +163,18 @@ class Parameter:
     partner: str | None
     group: Group
     way: Way
+    sideways: bool
     description: str
 
     @property
     def contracts(self) -> bool:
         """Whether it is a muscle, or the jaw: something that is held between 0, at rest, and 1."""
         return self.unit in _FRACTIONS
+
+    @property
+    def held(self) -> bool:
+        """Whether it is set by hand like a muscle and released again; what turns stands beside that."""
+        return self.unit != "rad"
 
     @property
     def morphs(self) -> bool:
@@ -194,6 +206,7 @@ def _build() -> tuple[Parameter, ...]:
             partner=partner,
             group=row.group,
             way=row.way,
+            sideways=row.sideways,
             description=row.description,
         )
         for index, (name, partner, row) in enumerate(rows)
@@ -207,6 +220,8 @@ MUSCLES: tuple[str, ...] = tuple(name for name, row in _TABLE.items() if row.uni
 """What a rule may contract: muscles without their side, and the jaw."""
 CONTRACTIONS: tuple[str, ...] = tuple(parameter.name for parameter in PARAMETERS if parameter.contracts)
 """The parameters that are 0..1, sides apart: every muscle, and the jaw."""
+HELD: tuple[str, ...] = tuple(parameter.name for parameter in PARAMETERS if parameter.held)
+"""The contractions, and the shares, which are signed: what is set by hand."""
 VECTOR_MUSCLES: tuple[str, ...] = tuple(parameter.name for parameter in PARAMETERS if parameter.kind == "vector")
 """The vector muscles with their sides, in the order of their parameters."""
 LOW: Floats = np.array([parameter.low for parameter in PARAMETERS], np.float32)
@@ -214,6 +229,10 @@ HIGH: Floats = np.array([parameter.high for parameter in PARAMETERS], np.float32
 NEUTRAL: Floats = np.array([parameter.neutral for parameter in PARAMETERS], np.float32)
 LOW.flags.writeable = HIGH.flags.writeable = NEUTRAL.flags.writeable = False
 _BY_NAME = {parameter.name: parameter for parameter in PARAMETERS}
+
+
+_IMAGES = np.array([_BY_NAME[known.partner or known.name].index for known in PARAMETERS])
+_SIGNS = np.array([-1.0 if known.sideways else 1.0 for known in PARAMETERS], np.float32)
 
 
 def parameter(name: str) -> Parameter:
@@ -307,6 +326,10 @@ class FacePose(NamedArray):
                 known = PARAMETERS[index]
                 values[index] = check_range(name, value, known.low, known.high)
         return FacePose(values)
+
+    def mirrored(self) -> FacePose:
+        """The pose of the face's image in its median plane."""
+        return FacePose(_SIGNS * self.array[_IMAGES])
 
     def __getitem__(self, name: str) -> float:
         return float(self.array[parameter(name).index])

@@ -71,7 +71,10 @@ def test_the_table_is_consistent():
         if known.contracts:
             assert (known.low, known.high, known.bounds) == (0.0, 1.0, (0.0, 1.0))
         else:
-            assert known.unit == "rad"
+            assert known.held == (known.unit == "share")
+        if known.unit == "share":
+            assert known.bounds == (-1.0, 1.0)
+        if known.unit == "rad":
             assert [math.radians(bound) for bound in known.bounds] == pytest.approx([known.low, known.high], abs=1e-6)
 
 
@@ -87,11 +90,24 @@ def test_partners_are_each_others_on_the_other_side():
             assert (other.kind, other.unit, other.group, other.way) == (known.kind, known.unit, known.group, known.way)
 
 
+@given(st.lists(st.floats(0, 1), min_size=COUNT, max_size=COUNT))
+def test_the_image_of_an_image_is_the_pose(fractions):
+    pose = FacePose((parameters.LOW + (parameters.HIGH - parameters.LOW) * np.array(fractions)).astype(np.float32))
+    image = pose.mirrored()
+    assert image.mirrored() == pose
+    assert image["jaw_shift"] == -pose["jaw_shift"]
+    assert image["jaw_thrust"] == pose["jaw_thrust"]
+    assert image["cheek_puff_l"] == pose["cheek_puff_r"]
+
+
 def test_a_signed_or_turned_parameter_is_no_muscle():
     for name in ("gaze_yaw", "gaze_pitch", "gaze_vergence", "head_yaw", "head_pitch", "head_roll"):
         assert name not in parameters.muscle_names()
         assert not parameters.parameter(name).contracts
-    bounds = {known.name: known.bounds for known in PARAMETERS if not known.contracts}
+    shares = [known.name for known in PARAMETERS if known.unit == "share"]
+    assert {"jaw_thrust", "mouth_shift", "orbicularis_oris_roll_upper_l", "cheek_puff_r"} <= set(shares)
+    assert not set(shares) & set(parameters.muscle_names())
+    bounds = {known.name: known.bounds for known in PARAMETERS if known.unit == "rad"}
     assert bounds == {
         "gaze_yaw": (-50, 50), "gaze_pitch": (-40, 40), "gaze_vergence": (-10, 25),
         "head_yaw": (-80, 80), "head_pitch": (-60, 60), "head_roll": (-50, 50),

@@ -18,7 +18,7 @@ from agentface.conventions import SIDES, Floats, Indices, check_fraction
 from agentface.errors import DataError, Fault, InvalidValueError
 from agentface.head import asymmetry as own
 from agentface.head.landmarks import Landmarks, place_landmarks, read_landmarks
-from agentface.head.morphs import MorphsFile, PlacedMorph, place_morphs, read_morphs
+from agentface.head.morphs import MorphsFile, MorphSkin, PlacedMorph, place_morphs, read_morphs
 from agentface.head.muscle_set import MuscleSet
 from agentface.head.muscles import Borders, MusclesFile, place_muscles, read_muscles
 from agentface.head.regions import Regions, load_regions
@@ -164,7 +164,18 @@ class HeadModel:
     @cached_property
     def morphs(self) -> tuple[PlacedMorph, ...]:
         """What the parameters that are no single muscle do to the skin."""
-        return place_morphs(self)
+        skin = MorphSkin(
+            self.vertices,
+            self.triangles,
+            self.mirror,
+            self.normals,
+            self.material,
+            self.shapes,
+            self.landmarks,
+            self.borders,
+            self.lips.rings,
+        )
+        return place_morphs(self.morphs_file, skin)
 
     @cached_property
     def trains(self) -> tuple[PlacedTrain, ...]:

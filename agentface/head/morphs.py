@@ -6,10 +6,9 @@ proportion.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, Literal
+from typing import Annotated, Any, Literal, NamedTuple
 
 import numpy as np
 from pydantic import Field
@@ -18,14 +17,15 @@ from agentface.config import Document, Table
 from agentface.conventions import SIDES, Doubles, Floats, Indices
 from agentface.errors import did_you_mean
 from agentface.head.arkit import ARKIT_SHAPES, sided
+from agentface.head.landmarks import Landmarks
+from agentface.head.muscles import Borders
 from agentface.head.ring_names import LipRing
+from agentface.head.rings import RingHalves
 from agentface.head.volumes import Ellipsoid, check_names
 from agentface.mesh.evening import evened
+from agentface.mesh.glb import Shape
 from agentface.mesh.smoothstep import smoothstep
-from agentface.parameters import PARAMETERS, indices_of, parameter
-
-if TYPE_CHECKING:
-    from agentface.head.model import HeadModel
+from agentface.parameters import PARAMETERS, indices_of
 
 _Part = Annotated[float, Field(ge=-2, le=2)]
 _Way = Annotated[float, Field(ge=-0.3, le=0.3)]
@@ -57,7 +57,10 @@ class End(Table):
 
 
 class MorphRow(Table):
-    """One parameter. ``lip`` is the lip to which it is kept; ``low`` is for one that has negative values."""
+    """One parameter. ``lip`` is the lip to which it is kept; ``low`` is for one that has negative values.
+
+    The lower end of one that goes sideways is the image of its upper one, and has no row.
+    """
 
     lip: Literal["upper", "lower"] | None = None
     high: End
@@ -109,90 +112,102 @@ def read_morphs(path: str | Path) -> MorphsFile:
 
 
 def _check_row(document: Document, name: str, row: dict[str, Any]) -> None:
-    signed = parameter(_members(name)[0]).low < 0.0
+    known = PARAMETERS[indices_of(name)[0]]
+    signed = known.low < 0.0 and not known.sideways
     if signed != ("low" in row):
         got, what = ("none", "this key") if signed else ("one", "no key for values below 0, which it has not")
         document.fault(("morphs", name, "low"), what, got)
-    plain = {shape for side in SIDES for shape in _without_side(side)}
+    plain = {shape[: -len("Left")] for shape in ARKIT_SHAPES if sided(shape.removesuffix("Left"), SIDES[0])}
     for key in ("high", "low"):
         end = row.get(key)
         if isinstance(end, dict):
-            known = (*ARKIT_SHAPES, *sorted(plain))
-            check_names(document, ("morphs", name, key), end, {"shapes": ("an artists' shape (ARKit's names)", known)})
+            shapes = "an artists' shape (ARKit's names)", (*ARKIT_SHAPES, *sorted(plain))
+            check_names(document, ("morphs", name, key), end, {"shapes": shapes})
             bumps = end.get("bumps")
             for i, bump in enumerate(bumps if isinstance(bumps, list) else ()):
                 if isinstance(bump, dict):
                     check_names(document, ("morphs", name, key, "bumps", i), bump, {})
 
 
-def _without_side(side: str) -> Iterator[str]:
-    for shape in ARKIT_SHAPES:
-        for ending in ("Left", "Right"):
-            if sided(shape.removesuffix(ending), side):
-                yield shape.removesuffix(ending)
+class MorphSkin(NamedTuple):
+    """What morphs need of a face: fields of :class:`agentface.head.model.HeadModel`."""
+
+    vertices: Floats
+    triangles: Indices
+    mirror: Indices
+    normals: Floats
+    material: Floats
+    shapes: dict[str, Shape]
+    landmarks: Landmarks
+    borders: Borders
+    lip_rings: list[RingHalves]
 
 
-def _members(name: str) -> tuple[str, ...]:
-    return tuple(PARAMETERS[index].name for index in indices_of(name))
-
-
-def place_morphs(model: HeadModel) -> tuple[PlacedMorph, ...]:
+def place_morphs(file: MorphsFile, skin: MorphSkin) -> tuple[PlacedMorph, ...]:
     """The morphs of a face in the order of the parameters, a row's upper end before its lower one.
 
     A shape that the head does not have moves nothing.
     """
     placed = []
-    for name, row in model.morphs_file.morphs.items():
-        for index, side in zip(indices_of(name), SIDES, strict=False):
-            lip = -1 if row.lip is None else 2 * (row.lip == "lower") + (side != SIDES[0])
-            paired = PARAMETERS[index].partner is not None
-            for sign, end in ((1, row.high), (-1, row.low)):
-                if end is None:
-                    continue
-                way = _field(model, end, side if paired else None)
-                if row.lip is not None:
-                    way *= _of_lip(model, row.lip)[:, None]
-                moved = np.flatnonzero(np.abs(way).max(axis=1) > _LOWEST).astype(np.int32)
-                placed.append(PlacedMorph(index, sign, lip, moved, np.ascontiguousarray(way[moved], np.float32)))
+    for name, row in file.morphs.items():
+        lip = -1 if row.lip is None else 2 * (row.lip == "lower")
+        index, *partner = indices_of(name)
+        for sign, end in ((1, row.high), (-1, row.low)):
+            if end is None:
+                continue
+            way = _field(skin, end, paired=bool(partner))
+            if row.lip is not None:
+                way *= _of_lip(skin, row.lip)[:, None]
+            image = way[skin.mirror] * [-1.0, 1.0, 1.0]
+            if partner:
+                placed += [_placed(index, sign, lip, way), _placed(partner[0], sign, lip + (lip >= 0), image)]
+            elif PARAMETERS[index].sideways:
+                placed += [_placed(index, 1, lip, way), _placed(index, -1, lip, image)]
+            else:
+                placed.append(_placed(index, sign, lip, 0.5 * (way + image)))
     return tuple(sorted(placed, key=lambda morph: (morph.index, -morph.sign)))
 
 
-def _field(model: HeadModel, end: End, side: str | None) -> Doubles:
-    """``(V, 3)`` m: what an end does on side ``l`` or ``r``, or as a whole for a parameter without sides."""
-    count, unit = len(model.vertices), model.landmarks.eye_separation
-    sign = -1.0 if side == SIDES[1] else 1.0
+def _placed(index: int, sign: int, lip: int, way: Doubles) -> PlacedMorph:
+    moved = np.flatnonzero(np.abs(way).max(axis=1) > _LOWEST).astype(np.int32)
+    return PlacedMorph(index, sign, lip, moved, np.ascontiguousarray(way[moved], np.float32))
+
+
+def _field(skin: MorphSkin, end: End, *, paired: bool) -> Doubles:
+    """``(V, 3)`` m: what an end does, of a parameter with sides the left one's."""
+    count, unit = len(skin.vertices), skin.landmarks.eye_separation
     way = np.zeros((count, 3))
     for name, part in end.shapes.items():
-        own = sided(name, side) if side else None
-        shape = model.shapes.get(own or name)
+        own = sided(name, SIDES[0]) if paired else None
+        shape = skin.shapes.get(own or name)
         if shape is not None:
-            whole = own or side is None
-            share = np.ones(count) if whole else smoothstep(-_SIDE_M, _SIDE_M, sign * model.vertices[:, 0])
+            of_both = paired and not own
+            share = smoothstep(-_SIDE_M, _SIDE_M, skin.vertices[:, 0]) if of_both else np.ones(count)
             way += part * share[:, None] * shape.dense(count)
     if end.shapes:
-        way = evened(way, model.triangles, _EVENINGS, model.material[:, :3].max(axis=1) == 0.0)
+        way = evened(way, skin.triangles, _EVENINGS, skin.material[:, :3].max(axis=1) == 0.0)
     for bump in end.bumps:
-        way += bump.field((model.vertices, model.normals), model.landmarks, model.borders, side or SIDES[0])
+        way += bump.field((skin.vertices, skin.normals), skin.landmarks, skin.borders, SIDES[0])
     if any(end.ears):
-        ear = (model.material[:, _EAR] * (sign * model.vertices[:, 0] > 0.0)).astype(np.float64)
+        ear = (skin.material[:, _EAR] * (skin.vertices[:, 0] > 0.0)).astype(np.float64)
         # its root stays, so that it leans and does not fold
-        ear = evened(ear[:, None], model.triangles, _EAR_EVENINGS)
-        way += unit * ear * np.array(end.ears) * [sign, 1.0, 1.0]
+        ear = evened(ear[:, None], skin.triangles, _EAR_EVENINGS)
+        way += unit * ear * np.array(end.ears)
     return way
 
 
-def _of_lip(model: HeadModel, lip: str) -> Doubles:
+def _of_lip(skin: MorphSkin, lip: str) -> Doubles:
     """``(V,)`` 0..1: how far each vertex belongs to the upper or to the lower lip, which sum to 1."""
-    seam = model.lips.rings[LipRing.CONTACT]
-    across, height = model.vertices[sorted(seam.upper, key=lambda vertex: model.vertices[vertex, 0]), :2].T
-    line = np.interp(model.vertices[:, 0], across, height)
-    inside = model.landmarks["mouth_corner_l"][0] - np.abs(model.vertices[:, 0])
+    seam = skin.lip_rings[LipRing.CONTACT]
+    across, height = skin.vertices[sorted(seam.upper, key=lambda vertex: skin.vertices[vertex, 0]), :2].T
+    line = np.interp(skin.vertices[:, 0], across, height)
+    inside = skin.landmarks["mouth_corner_l"][0] - np.abs(skin.vertices[:, 0])
     reach = _CORNER_M + (_LIP_M - _CORNER_M) * smoothstep(0.0, _CORNER_M, inside)
-    above = smoothstep(-reach, reach, model.vertices[:, 1] - line)
-    for ring in model.lips.rings:
+    above = smoothstep(-reach, reach, skin.vertices[:, 1] - line)
+    for ring in skin.lip_rings:
         for half, value in ((ring.upper, 1.0), (ring.lower, 0.0)):
             inner = np.array(half[1:-1], np.int64)
-            corner = np.abs(model.vertices[half[0], 0]) - np.abs(model.vertices[inner, 0])
+            corner = np.abs(skin.vertices[half[0], 0]) - np.abs(skin.vertices[inner, 0])
             share = smoothstep(0.0, _CORNER_M, corner)
             above[inner] = share * value + (1.0 - share) * above[inner]
     return above if lip == "upper" else 1.0 - above

@@ -8,7 +8,7 @@ from agentface.conventions import Doubles
 from agentface.motion.envelope import Envelope
 from agentface.parameters import NAMES, PARAMETERS, indices_of
 
-_HELD = tuple(known for known in PARAMETERS if known.kind not in ("gaze", "head"))
+_HELD = tuple(known for known in PARAMETERS if known.held)
 
 
 class MuscleChannel:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from agentface.emotion.state import EMOTIONS, EmotionState
 from agentface.errors import UnknownNameError
-from agentface.parameters import CONTRACTIONS, PARAMETERS, parameter
+from agentface.parameters import CONTRACTIONS, HELD, PARAMETERS, parameter
 from agentface.requests import Blink, Request, SetEmotion, SetEmotions, SetMuscle, SetParameter
 from agentface.view.camera import Camera, named_view
 from agentface.view.gl.quality import QUALITIES
@@ -57,7 +57,7 @@ class Controls:
         held, turned = self.face.held, self.face.turned_deg
         return {
             **dict(self.face.emotion),
-            **{name: held.get(name) for name in CONTRACTIONS},
+            **{name: held.get(name) for name in HELD},
             **{name: turned[name] for name in ANGLES},
         }
 
@@ -89,7 +89,7 @@ class Controls:
 
     def reset(self) -> None:
         """Neutral, everything released, straight ahead."""
-        self.change(dict.fromkeys(EMOTIONS, 0.0) | dict.fromkeys(CONTRACTIONS) | dict.fromkeys(ANGLES, 0.0))
+        self.change(dict.fromkeys(EMOTIONS, 0.0) | dict.fromkeys(HELD) | dict.fromkeys(ANGLES, 0.0))
 
     def preset(self, name: str) -> None:
         """Set the six emotions to those of ``PRESETS[name]``."""
@@ -163,6 +163,8 @@ def requests_of(values: Mapping[str, float | None], fade: float) -> list[Request
     for name, value in values.items():
         if name in CONTRACTIONS:
             requests.append(SetMuscle(name, value, fade))
+        elif name in HELD:
+            requests.append(SetParameter(name, value, fade))
         elif name in ANGLES:
             requests.append(SetParameter(f"{name}_deg", value, fade))
         elif value is not None and not whole:
@@ -174,15 +176,15 @@ def bounds(name: str) -> tuple[float, float]:
     """The lowest and the highest value of an emotion, a muscle or an angle; raises UnknownNameError."""
     if name in EMOTIONS:
         return 0.0, 1.0
-    if name not in CONTRACTIONS and name not in ANGLES:
-        raise UnknownNameError("value", name, (*EMOTIONS, *CONTRACTIONS, *ANGLES))
+    if name not in HELD and name not in ANGLES:
+        raise UnknownNameError("value", name, (*EMOTIONS, *HELD, *ANGLES))
     return parameter(name).bounds
 
 
 def _within(name: str, value: float | None) -> float | None:
     low, high = bounds(name)
     if value is None:
-        return None if name in CONTRACTIONS else 0.0
+        return None if name in HELD else 0.0
     return round(max(low, min(high, float(value))), 6)
 
 

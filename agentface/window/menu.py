@@ -5,7 +5,7 @@ from __future__ import annotations
 from agentface.conventions import SIDES
 from agentface.emotion.state import EMOTIONS, NEUTRAL
 from agentface.parameters import GROUPS as GROUPS_OF_PARAMETERS
-from agentface.parameters import MUSCLES, NAMES, PARAMETERS, parameter
+from agentface.parameters import HELD, NAMES, PARAMETERS, parameter
 
 KEYS = (
     ("1 .. 6", "more happiness, sadness, anger, fear, disgust, surprise"),
@@ -38,12 +38,13 @@ def sides(muscle: str) -> tuple[str, ...]:
     return (muscle,) if muscle in NAMES else tuple(f"{muscle}_{side}" for side in SIDES)
 
 
+_HELD = tuple(dict.fromkeys(name.removesuffix("_l").removesuffix("_r") for name in HELD))
 GROUPS: dict[str, tuple[str, ...]] = {
-    group.capitalize(): tuple(muscle for muscle in MUSCLES if parameter(sides(muscle)[0]).group == group)
+    group.capitalize(): tuple(name for name in _HELD if parameter(sides(name)[0]).group == group)
     for group in GROUPS_OF_PARAMETERS
-    if any(known.group == group and known.contracts for known in PARAMETERS)
+    if any(known.group == group and known.held for known in PARAMETERS)
 }
-"""Every muscle, those of two sides without their side."""
+"""Everything that is set by hand, what has two sides without its side."""
 
 PRESETS: dict[str, dict[str, float]] = {
     **{emotion: {emotion: 1.0} for emotion in EMOTIONS},

@@ -119,7 +119,7 @@ def test_a_value_that_is_not_finite_is_told_with_its_face():
 @pytest.mark.parametrize("known", PARAMETERS, ids=NAMES)
 def test_every_parameter_has_its_range_and_the_whole_of_it(known):
     rows = np.zeros((2, COUNT), np.float32)
-    what = "angle" if known.unit == "rad" else "contraction"
+    what = "angle" if known.unit == "rad" else known.unit
     for limit, way in ((known.low, -math.inf), (known.high, math.inf)):
         rows[1, known.index] = limit
         crowd().deform(rows)

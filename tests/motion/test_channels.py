@@ -90,7 +90,8 @@ class Oracle:
                 weight = float(self.by_hand[name].value[0])
                 shown[name] = (1.0 - weight) * value + weight * float(self.set[name].value[0])
         shown |= {name: float(envelope.value[0]) for name, envelope in self.angles.items()}
-        return [shown[name] for name in NAMES]
+        shares = {known.name for known in PARAMETERS if known.unit == "share"}  # which no deed here touches
+        return [0.0 if name in shares else shown[name] for name in NAMES]
 
 
 ANGLE_NAMES = tuple(known.name for known in PARAMETERS if known.unit == "rad")
