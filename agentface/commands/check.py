@@ -20,8 +20,9 @@ _Loader = Callable[[Path], object]
 @click.command()
 @click.argument("files", nargs=-1, type=click.Path(path_type=Path), metavar="[FILE|FOLDER]...")
 @click.option("--face", metavar="NAME|PATH", help="A face to check.")
+@click.option("--strict", is_flag=True, help="Notes, of what a document says and the face does not show, are faults.")
 @deformer_option
-def check(*, files: tuple[Path, ...], face: str | None, deformer: str) -> None:
+def check(*, files: tuple[Path, ...], face: str | None, strict: bool, deformer: str) -> None:
     """Check rules, faces and EmotionML: files, folders, or, if none is named, all that come with agentface.
 
     Prints every fault with file and line; the exit code is 1 if there is any. A face need not have a tissue.yaml,
@@ -36,11 +37,16 @@ def check(*, files: tuple[Path, ...], face: str | None, deformer: str) -> None:
     faults: list[Fault] = []
     for place in places:
         found = list(dict.fromkeys(faults_of(place, tissue=tissue)))
+        notes = [] if found else _notes_of(place)
+        if strict:
+            found, notes = found + notes, []
         faults += found
         plural = "" if len(found) == 1 else "s"
         click.echo(f"{place}: {len(found)} fault{plural}" if found else f"{place}: good")
         for fault in found:
             click.echo(f"  {fault}")
+        for note in notes:
+            click.echo(f"  note: {note}")
     if faults:
         raise SystemExit(1)
 
@@ -75,13 +81,24 @@ def faults_of(place: str | Path, *, tissue: bool = False) -> list[Fault]:
 def _faults_of_file(path: Path) -> list[Fault]:
     from agentface.io.emotionml import load_emotionml
 
-    if path.suffix.lower() in (".xml", ".emotionml"):
+    if _is_emotionml(path):
         return _faults_in(lambda: load_emotionml(path))
     readers = _rule_readers() | _face_readers()
     kind = "look.yaml" if path.parent.name == "looks" else path.name
     if kind not in readers:
         return [Fault(path, None, "", f"one of {', '.join(readers)}, or EmotionML in .xml", path.name)]
     return _faults_in(lambda: readers[kind](path))
+
+
+def _is_emotionml(path: Path) -> bool:
+    return path.suffix.lower() in (".xml", ".emotionml")
+
+
+def _notes_of(path: Path) -> list[Fault]:
+    """What of a document without faults is not shown."""
+    from agentface.io.emotionml import load_emotionml
+
+    return list(load_emotionml(path).notes) if _is_emotionml(path) and path.is_file() else []
 
 
 def _faults_in(read: Callable[[], object]) -> list[Fault]:
@@ -94,7 +111,7 @@ def _faults_in(read: Callable[[], object]) -> list[Fault]:
 
 def _rule_readers() -> dict[str, _Loader]:
     from agentface.emotion.tables import load_blends, load_emotions
-    from agentface.io.emotion_vocabularies import load_vocabularies
+    from agentface.emotion.vocabularies import load_vocabularies
     from agentface.motion.conflicts import load_conflicts
     from agentface.studies.calibration.action_units import load_action_units
 

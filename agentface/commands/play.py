@@ -42,6 +42,7 @@ _MOST_NOTES = 5
 @click.option(
     "--fps", type=click.FloatRange(1, 240), default=30.0, show_default=True, help="Frames a second of a film."
 )
+@click.option("--strict", is_flag=True, help="Play nothing of a document that says what the face does not show.")
 @look_option
 @size_option
 @live_quality_option
@@ -55,6 +56,7 @@ def play(
     output: Path | None,
     loop: bool,
     fps: float,
+    strict: bool,
     look: str | None,
     size: tuple[int, int],
     quality: str | None,
@@ -73,7 +75,7 @@ def play(
         raise click.UsageError(f"--{of_a_film[0]} goes with -o")
     if output is not None and loop:
         raise click.UsageError("--loop goes without -o")
-    score = _score(document)
+    score = _score(document, strict=strict)
     shown = make_face(face, deformer, look=look, running=output is None)
     with until_told() as ending:
         if output is not None:
@@ -86,15 +88,13 @@ def play(
             raise GraphicsError(f"{error}\n{hint}") from error
 
 
-def _score(document: Path) -> Score:
+def _score(document: Path, *, strict: bool) -> Score:
     from agentface.io.emotionml import load_emotionml
 
     if document.suffix.lower() == ".fap":
         got = "an MPEG-4 FAP file"
         raise DataError([Fault(document, None, "", "EmotionML, which is all that this version plays", got)])
-    score = load_emotionml(document)
-    if not score.cues:
-        raise DataError([Fault(document, None, "", "at least one emotion", "none")])
+    score = load_emotionml(document, strict=strict)
     for note in score.notes[:_MOST_NOTES]:
         tell(f"note: {note}")
     return score

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from itertools import combinations
+from itertools import product
 
 import numpy as np
 
@@ -14,6 +14,7 @@ _SPREAD = 0.005
 """Of the square of each weight, by which mixtures that are worth the same become one."""
 _MOST_MADE_UP = 1.15
 """How much of what the price takes is given back."""
+_AT_ONCE = 512
 
 
 def mixtures(points: Doubles, emotions: Doubles, doubts: Doubles | float = 0.0) -> Doubles:
@@ -25,20 +26,28 @@ def mixtures(points: Doubles, emotions: Doubles, doubts: Doubles | float = 0.0) 
 
     Source: the non-negative lasso, Tibshirani (1996), Regression shrinkage and selection via the lasso, JRSS B 58(1).
     """
-    count = emotions.shape[1]
-    lengths = np.linalg.norm(points, axis=1)
-    directions = points.T / np.where(lengths > 0.0, lengths, 1.0)
-    pull = emotions.T @ directions - _PRICE
-    gram = emotions.T @ emotions + np.diag(np.broadcast_to(_SPREAD + np.asarray(doubts), count))
-    weights, worth = np.zeros_like(pull), np.zeros(len(points))
-    for chosen in (list(some) for size in range(1, count + 1) for some in combinations(range(count), size)):
-        found = np.linalg.inv(gram[np.ix_(chosen, chosen)]) @ pull[chosen]
-        gained = (found * pull[chosen]).sum(axis=0)
-        better = np.flatnonzero((found.min(axis=0) >= 0.0) & (gained > worth))
-        worth[better] = gained[better]
-        weights[:, better] = 0.0
-        weights[np.ix_(chosen, better)] = found[:, better]
-    reached = emotions @ weights
-    along, square = (reached * directions).sum(axis=0), (reached**2).sum(axis=0)
+    lengths = np.linalg.norm(points, axis=1, keepdims=True)
+    directions = points / np.where(lengths > 0.0, lengths, 1.0)
+    pull = directions @ emotions - _PRICE
+    gram = emotions.T @ emotions + np.diag(np.broadcast_to(_SPREAD + np.asarray(doubts), emotions.shape[1]))
+    masks, solved = _solved(gram)
+    weights = np.empty_like(pull)
+    for start in range(0, len(pull), _AT_ONCE):
+        some = pull[start : start + _AT_ONCE]
+        found = (solved @ some.T) * masks[:, :, None]
+        worth = np.where((found >= 0.0).all(axis=1), (found * some.T).sum(axis=1), -np.inf)
+        weights[start : start + _AT_ONCE] = found[worth.argmax(axis=0), :, np.arange(len(some))]
+    reached = weights @ emotions.T
+    along, square = (reached * directions).sum(axis=1), (reached**2).sum(axis=1)
     made_up = np.clip(along / np.where(square > 0.0, square, 1.0), 1.0, _MOST_MADE_UP)
-    return np.clip((weights * made_up * lengths).T, 0.0, 1.0)
+    return np.clip(weights * made_up[:, None] * lengths, 0.0, 1.0)
+
+
+def _solved(gram: Doubles) -> tuple[Doubles, Doubles]:
+    """Every choice among the emotions, ``(64, 6)`` of 0 and 1, and the inverse of its part of ``gram``, 0 elsewhere.
+
+    The best mixture is the stationary one of some choice; of those that have no negative weight, the one worth most.
+    """
+    masks = np.array(list(product((0.0, 1.0), repeat=len(gram))))
+    both = masks[:, :, None] * masks[:, None, :]
+    return masks, np.linalg.inv(gram * both + np.eye(len(gram)) * (1.0 - masks)[:, None, :]) * both

@@ -81,13 +81,14 @@ class Score:
 
     ``state`` is what the cues say, exactly. ``changes`` are the messages that make a face show it: a jump between
     constant states becomes a fade, a trace a chain of small moves. ``notes`` are the places of a document where the
-    cues are not all that it says.
+    cues are not all that it says; where its last emotions show nothing, it lasts longer than they, ``lasts_s``.
     """
 
-    def __init__(self, cues: Iterable[Cue] = (), notes: Iterable[Fault] = ()) -> None:
+    def __init__(self, cues: Iterable[Cue] = (), notes: Iterable[Fault] = (), lasts_s: float = 0.0) -> None:
         self.cues = tuple(sorted(cues, key=lambda cue: (cue.start_s, cue.end_s, _ROWS.index(cue.emotion))))
         self.notes = tuple(notes)
         self.duration_s = max((cue.end_s for cue in self.cues), default=0.0)
+        self.duration_s = max(self.duration_s, check_range("lasts_s", lasts_s, 0.0, LONGEST_S))
         counts = np.array([len(cue.samples) for cue in self.cues], np.intp)
         self._starts = np.array([cue.start_s for cue in self.cues])
         self._ends = np.array([cue.end_s for cue in self.cues])
@@ -100,8 +101,23 @@ class Score:
 
     @property
     def length_s(self) -> float:
-        """Until the face is neutral again, which takes a fade after the last end; 0 without cues."""
-        return self.duration_s + FADE_S if self.cues else 0.0
+        """Until the face is neutral again, which takes a fade after the last end; 0 for a score of no duration."""
+        return self.duration_s + FADE_S if self.duration_s else 0.0
+
+    @classmethod
+    def sampled(cls, states: npt.ArrayLike, rate_hz: float) -> Score:
+        """The score of states of the six, ``(T, 6)`` in the order of ``EMOTIONS``, that come ``rate_hz`` a second.
+
+        Between two of them lies a line; the last holds for one step. Raises InvalidValueError for what is none.
+        """
+        levels = np.asarray(states, np.float64)
+        if levels.ndim != 2 or levels.shape[1] != len(EMOTIONS) or not len(levels):
+            raise InvalidValueError("states", f"an array of shape (T, {len(EMOTIONS)})", levels.shape)
+        if check_range("rate_hz", rate_hz, 0.0, FASTEST_HZ) == 0.0:
+            raise InvalidValueError("rate_hz", "more than 0", rate_hz)
+        end_s = len(levels) / rate_hz
+        shown = [(name, column) for name, column in zip(EMOTIONS, levels.T, strict=True) if np.any(column)]
+        return cls((Cue(name, 0.0, end_s, tuple(column.tolist()), rate_hz) for name, column in shown), lasts_s=end_s)
 
     def state(self, time_s: float) -> EmotionState:
         """The intensities at a time in seconds."""

@@ -1,4 +1,4 @@
-"""What the words of the vocabularies for emotions mean to the face: mixtures of the six, by ``rules/vocabularies.yaml``.
+"""What the words of vocabularies for emotions mean to the face: mixtures, by ``rules/vocabularies.yaml``.
 
 Source: Vocabularies for EmotionML, W3C Note 1 April 2014.
 """

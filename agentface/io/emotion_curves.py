@@ -13,13 +13,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from agentface.conventions import ROUNDING, Doubles
-from agentface.emotion.score import FASTEST_HZ
+from agentface.emotion.score import FASTEST_HZ, LONGEST_S
 from agentface.io.emotionml_grammar import NAMESPACE, Grammar, shortened
 from agentface.io.markup import Element
 from agentface.io.report import Report
 
 _NUMBER = re.compile(r"[-+]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][-+]?\d+)?", re.ASCII)
 _HERTZ = re.compile(r"(\d+(?:\.\d*)?)\s*Hz", re.ASCII)
+_SLOWEST_HZ = 1e-6
 _TOGETHER_HZ = 50.0
 _MOST_TOGETHER = 10
 """Samples of traces made one, in parts of the samples that they have."""
@@ -53,7 +54,7 @@ def together(curves: Sequence[Curve]) -> tuple[Doubles, float]:
     if not moving:
         return np.array([[curve.samples[0] for curve in curves]]), 0.0
     rate = min(max(curve.rate_hz for curve in moving), _TOGETHER_HZ)
-    length_s = max((len(curve.samples) - 1) / curve.rate_hz for curve in moving)
+    length_s = min(max((len(curve.samples) - 1) / curve.rate_hz for curve in moving), LONGEST_S)
     if all(curve.rate_hz == rate for curve in moving):
         count = max(len(curve.samples) for curve in moving)
     else:
@@ -110,7 +111,8 @@ class CurveReader:
 
 
 def _slow_enough(samples: Doubles, rate_hz: float) -> Curve:
-    """A trace of at most ``FASTEST_HZ``, its last sample kept."""
+    """A trace of at most ``FASTEST_HZ``, its last sample kept; a slower one than once in 11 days counts as that."""
+    rate_hz = max(rate_hz, _SLOWEST_HZ)
     every = max(1, math.ceil(min(rate_hz / FASTEST_HZ, len(samples))))
     if every == 1:
         return Curve(samples, min(rate_hz, FASTEST_HZ))

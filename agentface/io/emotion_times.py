@@ -9,8 +9,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from agentface.emotion.score import LONGEST_S
-from agentface.errors import did_you_mean
-from agentface.io.emotion_vocabularies import Tell
+from agentface.io.emotionml_grammar import Grammar, shortened
+from agentface.io.markup import Element
+from agentface.io.report import Report
+
+LASTS_MS = 2000.0
+"""An emotion of which a document does not say how long it lasts."""
+_LONGEST_MS = 1000.0 * LONGEST_S
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,14 +44,51 @@ class Timing:
     anchor: str = "start"
 
 
-def spans_of(timings: Sequence[Timing], tell: Tell, note: Tell) -> list[tuple[float, float]]:
-    """Start and end of each emotion in seconds, the earliest of them at 0 or later.
+def read_timing(element: Element, grammar: Grammar, report: Report, where: str, lasts_ms: float | None) -> Timing:
+    """What an ``<emotion>`` says about its time; ``lasts_ms`` is how long its longest trace lasts.
+
+    What is not allowed is told: numbers that are none, an end that is not start plus duration. Where absolute and
+    relative times are given, the absolute ones count, which is noted.
+    """
+    lasts = min(max(lasts_ms or LASTS_MS, 1.0), 2.0 * _LONGEST_MS)
+    start, end, duration = (grammar.whole(element, name, where) for name in ("start", "end", "duration"))
+    offset = grammar.whole(element, "offset-to-start", where, signed=True)
+    reference = grammar.address(element, "time-ref-uri", where)
+    anchor = element.attributes.get("time-ref-anchor-point", "start").strip()
+    if anchor not in ("start", "end"):
+        report.tell(element.line, f"{where}.time-ref-anchor-point", "start or end", shortened(anchor))
+    relative = [name for name in ("offset-to-start", "time-ref-uri") if name in element.attributes]
+    if relative and (start is not None or end is not None):
+        report.note(element.line, where, "absolute or relative times", f"{relative[0]} beside start or end")
+    if start is not None and end is not None:
+        if end < start or duration not in (None, 0, end - start):
+            got = f"start {start}, end {end}" + ("" if duration is None else f", duration {duration}")
+            report.tell(element.line, where, "an end that is start plus duration", got)
+        duration = max(end - start, 0)
+    elif end is not None:
+        start = end - round(duration or lasts)
+    return Timing(
+        line=element.line,
+        where=where,
+        lasts=lasts,
+        name=element.attributes["id"].strip() if "id" in element.attributes else None,
+        start=start,
+        duration=duration or None,  # the Recommendation's default, 0, says no more than that it happened
+        offset=offset,
+        reference=reference,
+        anchor=anchor,
+    )
+
+
+def spans_of(timings: Sequence[Timing], report: Report) -> list[tuple[float, float]]:
+    """Start and end of each emotion in seconds, the earliest of them at 0 or later, all within ``LONGEST_S``.
 
     Absolute times count from the earliest of them. An emotion that says nothing of its start follows the one before
     it in the document. What something outside of the document is the reference of counts from the beginning, which is
-    noted where it might be an emotion's id. What cannot be placed is told, and stands at 0.
+    noted where it might be an emotion's id. Noted, too, are emotions that count from each other in a circle, of which
+    one stands at 0, and those that are cut at ``LONGEST_S``, or left out, whose start and end are then the same.
     """
-    names = _names(timings, tell, note)
+    names = _names(timings, report)
     epoch = min((timing.start for timing in timings if timing.start is not None), default=0.0)
     spans: dict[int, tuple[float, float]] = {}
     for index in range(len(timings)):
@@ -54,7 +96,7 @@ def spans_of(timings: Sequence[Timing], tell: Tell, note: Tell) -> list[tuple[fl
         link: int | None = index
         while link is not None and link not in spans:
             if link in chain:
-                _tell_circle(timings[link], tell)
+                _note_circle(timings[link], report)
                 spans[link] = (0.0, timings[link].duration or timings[link].lasts)
                 break
             chain[link] = None
@@ -67,26 +109,30 @@ def spans_of(timings: Sequence[Timing], tell: Tell, note: Tell) -> list[tuple[fl
     placed = [tuple((edge - shift) / 1000.0 for edge in spans[index]) for index in range(len(timings))]
     for timing, (_, end) in zip(timings, placed, strict=True):
         if end > LONGEST_S:
-            tell(timing.line, timing.where, f"an end within {LONGEST_S:g} s of the first start", f"{end:g} s", "")
-    return [(start, end) for start, end in placed]
+            expected = f"an end within {LONGEST_S:g} s of the first start"
+            report.note(timing.line, timing.where, expected, f"{end:g} s", "what comes later is left out")
+    return [(min(start, LONGEST_S), min(end, LONGEST_S)) for start, end in placed]
 
 
-def _names(timings: Sequence[Timing], tell: Tell, note: Tell) -> dict[str, int]:
+def _names(timings: Sequence[Timing], report: Report) -> dict[str, int]:
     names: dict[str, int] = {}
     for index, timing in enumerate(timings):
-        if timing.name is not None and names.setdefault(f"#{timing.name}", index) != index:
-            tell(timing.line, f"{timing.where}.id", "an id of its own", f"{timing.name!r} again", "")
+        if timing.name is not None:
+            names.setdefault(f"#{timing.name}", index)
     for timing in timings:
         reference = timing.reference or ""
         if reference.startswith("#") and reference not in names:
-            hint = f"{did_you_mean(reference, list(names))} " if names else ""
-            hint += "It is taken for something outside of the document, at its beginning"
-            note(timing.line, f"{timing.where}.time-ref-uri", "the id of an emotion", repr(reference), hint)
+            hint = (
+                f"{report.near(reference, names)} It is taken for something outside of the document, at its beginning"
+            )
+            where = f"{timing.where}.time-ref-uri"
+            report.note(timing.line, where, "the id of an emotion", shortened(reference), hint.strip())
     return names
 
 
-def _tell_circle(timing: Timing, tell: Tell) -> None:
-    tell(timing.line, timing.where, "times that lead to a start", "a circle of emotions that count from each other", "")
+def _note_circle(timing: Timing, report: Report) -> None:
+    got = "a circle of emotions that count from each other"
+    report.note(timing.line, timing.where, "times that lead to a start", got, "this one is put at the beginning")
 
 
 def _counts_from(index: int, timing: Timing, names: dict[str, int]) -> int | None:

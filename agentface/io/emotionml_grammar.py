@@ -9,7 +9,6 @@ from __future__ import annotations
 import re
 
 from agentface.emotion.vocabularies import TYPES, is_word
-from agentface.errors import did_you_mean
 from agentface.io.markup import Element
 from agentface.io.report import Report
 
@@ -46,7 +45,7 @@ _CHILDREN: dict[str, tuple[str, ...]] = {
 }
 _ROLES = ("expressedBy", "experiencedBy", "triggeredBy", "targetedAt")
 _ID = re.compile(r"[^\W\d][\w.-]*")
-_URI = re.compile(r"(?:[A-Za-z][A-Za-z0-9+.-]*:|[^:/?#]*(?=[/?#]|$))[^\s<>\"{}|\\^`#]*(?:#[^\s<>\"{}|\\^`#]*)?")
+_URI = re.compile(r"(?:[A-Za-z][A-Za-z0-9+.-]*:|[^:/?#]*(?=[/?#]|$))[^#]*(?:#[^#]*)?")
 _MIME = re.compile(r"[\w!#$&^.+-]+/[\w!#$&^.+-]+(?:\s*;\s*[\w!#$&^.+-]+=(?:[\w!#$&^.+/-]+|\"[^\"]*\"))*", re.ASCII)
 _WHOLE = re.compile(r"[-+]?\d+", re.ASCII)
 
@@ -67,8 +66,8 @@ class Grammar:
         for child in element.children:
             if child.namespace != NAMESPACE or child.name not in allowed:
                 place = "" if child.namespace == NAMESPACE else f" of {child.namespace or 'no namespace'}"
-                hint = did_you_mean(child.name, allowed) if allowed else ""
-                self._report.tell(child.line, where, "no such element", f"<{child.name}>{place}", hint)
+                hint = self._report.near(child.name, allowed)
+                self._report.tell(child.line, where, "no such element", f"<{child.name[:60]}>{place}", hint)
             elif child.name == "info":
                 infos += 1
                 if infos > 1:
@@ -82,7 +81,7 @@ class Grammar:
         """Tell a version that is not 1.0; ``<emotionml>`` must have one."""
         version = element.attributes.get("version", "nothing" if element.name == "emotionml" else "1.0")
         if version.strip() != "1.0":
-            self._report.tell(element.line, f"{where}.version", "1.0", version)
+            self._report.tell(element.line, f"{where}.version", "1.0", version[:60])
 
     def identity(self, element: Element, where: str) -> str | None:
         """The element's ``id``; one that is none, or another element's, is told."""
@@ -90,10 +89,10 @@ class Grammar:
             return None
         name = element.attributes["id"].strip()
         if not is_id(name):
-            got = repr(name) if name else "nothing"
+            got = shortened(name) if name else "nothing"
             self._report.tell(element.line, f"{where}.id", "an id that begins with a letter", got)
         elif name in self._ids:
-            self._report.tell(element.line, f"{where}.id", "an id of its own", f"{name!r} again")
+            self._report.tell(element.line, f"{where}.id", "an id of its own", f"{shortened(name)} again")
         self._ids.add(name)
         return name
 
@@ -101,14 +100,14 @@ class Grammar:
         """The URI that an attribute holds; None where it is not there; one that is none is told."""
         text = element.attributes.get(attribute)
         if text is not None and not _URI.fullmatch(text.strip()):
-            self._report.tell(element.line, f"{where}.{attribute}", "a URI", repr(text))
+            self._report.tell(element.line, f"{where}.{attribute}", "a URI", shortened(text))
         return None if text is None else text.strip()
 
     def words(self, element: Element, attribute: str, where: str) -> None:
         """Tell an attribute that is there and holds no words."""
         text = element.attributes.get(attribute)
         if text is not None and not (text.split() and all(is_word(word) for word in text.split())):
-            self._report.tell(element.line, f"{where}.{attribute}", "words, with blanks between them", repr(text))
+            self._report.tell(element.line, f"{where}.{attribute}", "words, with blanks between them", shortened(text))
 
     def whole(self, element: Element, attribute: str, where: str, *, signed: bool = False) -> int | None:
         """The whole number of milliseconds that an attribute holds; None where it is not there, or told."""
@@ -132,16 +131,18 @@ class Grammar:
             self._report.tell(element.line, f"{where}.uri", "what it refers to", "nothing")
         role = element.attributes.get("role", _ROLES[0]).strip()
         if role not in _ROLES:
-            self._report.tell(element.line, f"{where}.role", f"one of {', '.join(_ROLES)}", repr(role))
+            self._report.tell(element.line, f"{where}.role", f"one of {', '.join(_ROLES)}", shortened(role))
         kind = element.attributes.get("media-type")
         if kind is not None and not _MIME.fullmatch(kind.strip()):
-            self._report.tell(element.line, f"{where}.media-type", "a MIME type, like video/mp4", repr(kind))
+            self._report.tell(element.line, f"{where}.media-type", "a MIME type, like video/mp4", shortened(kind))
 
     def _attributes(self, element: Element, where: str) -> None:
         known = _ATTRIBUTES[element.name]
         for name in element.attributes:
             if name not in known:
-                self._report.tell(element.line, where, "no such attribute", repr(name), did_you_mean(name, known))
+                self._report.tell(
+                    element.line, where, "no such attribute", shortened(name), self._report.near(name, known)
+                )
 
     def _info(self, element: Element, where: str) -> None:
         self._attributes(element, where)

@@ -16,6 +16,7 @@ from defusedxml.expatreader import DefusedExpatParser
 from agentface.errors import DataError, Fault
 
 _DEEPEST = 100
+_MOST_ELEMENTS = 200_000
 
 
 @dataclass(slots=True)
@@ -32,7 +33,8 @@ class Element:
 def read_xml(data: bytes, where: Path) -> Element:
     """The root of a document, text and comments left out.
 
-    A document type, and with it every entity, is refused. Raises DataError with the one fault that ends the reading.
+    A document type, and with it every entity, is refused, and so are more than 200 000 elements. Raises DataError with
+    the one fault that ends the reading.
     """
     parser = DefusedExpatParser(forbid_dtd=True, forbid_entities=True, forbid_external=True)
     builder = _Builder()
@@ -47,8 +49,8 @@ def read_xml(data: bytes, where: Path) -> Element:
     except DefusedXmlException as error:
         got = "one; leave <!DOCTYPE ...> and <!ENTITY ...> out"
         raise _fault(where, parser.getLineNumber(), "no document type and no entities", got) from error
-    except _TooDeepError as error:
-        raise _fault(where, error.line, f"elements nested at most {_DEEPEST} deep", "more") from error
+    except _TooMuchError as error:
+        raise _fault(where, error.line, error.expected, "more") from error
     except (ValueError, LookupError) as error:  # an encoding that expat cannot use
         raise _fault(where, None, "XML in UTF-8", str(error)) from error
     assert builder.root is not None, "a well-formed document has a root"  # noqa: S101 - for the type checker
@@ -59,9 +61,9 @@ def _fault(where: Path, line: int | None, expected: str, got: str) -> DataError:
     return DataError([Fault(where, line or None, "", expected, got)])
 
 
-class _TooDeepError(Exception):
-    def __init__(self, line: int) -> None:
-        self.line = line
+class _TooMuchError(Exception):
+    def __init__(self, line: int, expected: str) -> None:
+        self.line, self.expected = line, expected
 
 
 class _Builder(ContentHandler):
@@ -69,6 +71,7 @@ class _Builder(ContentHandler):
         super().__init__()
         self.root: Element | None = None
         self._open: list[Element] = []
+        self._count = 0
         self._locator: Any = None
 
     def setDocumentLocator(self, locator: Any) -> None:  # noqa: N802 - the name is SAX's
@@ -77,7 +80,10 @@ class _Builder(ContentHandler):
     def startElementNS(self, name: tuple[str | None, str], qname: str | None, attrs: AttributesNSImpl) -> None:  # noqa: N802 - the name is SAX's
         line = int(self._locator.getLineNumber())
         if len(self._open) == _DEEPEST:
-            raise _TooDeepError(line)
+            raise _TooMuchError(line, f"elements nested at most {_DEEPEST} deep")
+        self._count += 1
+        if self._count > _MOST_ELEMENTS:
+            raise _TooMuchError(line, f"at most {_MOST_ELEMENTS} elements")
         plain = {key: value for (namespace, key), value in attrs.items() if namespace is None}
         element = Element(name[0] or "", name[1], line, plain)
         if self._open:

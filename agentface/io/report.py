@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass, field
+from itertools import islice
 from pathlib import Path
 
-from agentface.errors import DataError, Fault
+from agentface.errors import DataError, Fault, did_you_mean
 
 _MOST = 1000
+_MOST_NAMES = 100
 
 
 @dataclass(slots=True)
@@ -27,6 +30,13 @@ class Report:
         """Remember what is allowed, and not shown as it is written."""
         if len(self.notes) < _MOST:
             self.notes.append(Fault(self.path, line, where, expected, got, hint))
+
+    def near(self, got: str, known: Iterable[str]) -> str:
+        """As :func:`agentface.errors.did_you_mean`, of the first 100 names; nothing where no more is told."""
+        if len(self.faults) + len(self.notes) >= _MOST:
+            return ""
+        names = list(islice(known, _MOST_NAMES))
+        return did_you_mean(got[:_MOST_NAMES], names) if names else ""
 
     def check(self) -> None:
         """Raise DataError if there is any fault, with all of them by their lines."""
