@@ -119,7 +119,6 @@ def test_an_error_leaves_no_file_and_a_signal_what_was_filmed(monkeypatch, short
     ("text", "message"),
     [
         (f"{HEAD}\n<emotion>\n<category name='joy'/></emotion></emotionml>", ":3: emotion 1.category joy: expected"),
-        (f"{HEAD}</emotionml>", "at least one emotion"),
         ("<emotionml>", ":1: expected well-formed XML"),
     ],
 )  # fmt: skip
@@ -151,6 +150,38 @@ def test_usage(short, tmp_path):
     assert "--size goes with -o" in fail(short, "--size", "64x64", code=2)
     assert "--loop goes without -o" in fail(short, "--loop", "-o", tmp_path / "a.mp4", code=2)
     fail(short, "--fps", "0", code=2)
+
+
+RELEVANCE = (
+    '<emotion duration="250" appraisal-set="http://www.w3.org/TR/emotion-voc/xml#scherer-appraisals">'
+    '<appraisal name="relevance-person"/></emotion>'
+)
+
+
+@pytest.mark.parametrize(
+    ("text", "note"),
+    [(f"{HEAD}\n{RELEVANCE}</emotionml>", ":2: emotion 1.appraisal relevance-person: expected what the face shows"),
+     (f"{HEAD}\n</emotionml>", ":1: expected at least one emotion, got none")],
+)  # fmt: skip
+def test_what_is_not_shown_is_a_note_and_with_strict_a_fault(tmp_path, text, note):
+    path = tmp_path / "moods.xml"
+    path.write_text(text)
+    assert f"{path}{note}" in fail(path, "--strict", "-o", tmp_path / "a.mp4")
+    check = CliRunner().invoke(cli, ["check", str(path)])
+    assert (check.exit_code, check.stdout.splitlines()[0]) == (0, f"{path}: good")
+    assert f"  note: {path}{note}" in check.stdout
+    check = CliRunner().invoke(cli, ["check", "--strict", str(path)])
+    assert (check.exit_code, check.stdout.splitlines()[0]) == (1, f"{path}: 1 fault")
+    assert list(tmp_path.iterdir()) == [path]
+
+
+@pytest.mark.gl
+def test_a_document_of_which_nothing_is_shown_is_a_film_of_the_neutral_face(tmp_path):
+    path = tmp_path / "moods.xml"
+    path.write_text(f"{HEAD}\n{RELEVANCE}</emotionml>")
+    result = call(path, "-o", tmp_path / "a.mp4", *SMALL)
+    assert (result.exit_code, "note: " in result.stderr) == (0, True), result.output
+    assert len(frames(tmp_path / "a.mp4")) == 5
 
 
 def test_check_knows_emotionml(short, tmp_path):

@@ -11,6 +11,7 @@ from agentface.errors import DataError, Fault, did_you_mean
 
 _MOST = 1000
 _MOST_NAMES = 100
+_LONGEST = 1000
 
 
 @dataclass(slots=True)
@@ -24,12 +25,16 @@ class Report:
     def tell(self, line: int | None, where: str, expected: str, got: str, hint: str = "") -> None:
         """Remember what is not allowed."""
         if len(self.faults) < _MOST:
-            self.faults.append(Fault(self.path, line, where, expected, got, hint))
+            self.faults.append(self._fault(line, where, expected, got, hint))
 
     def note(self, line: int | None, where: str, expected: str, got: str, hint: str = "") -> None:
         """Remember what is allowed, and not shown as it is written."""
         if len(self.notes) < _MOST:
-            self.notes.append(Fault(self.path, line, where, expected, got, hint))
+            self.notes.append(self._fault(line, where, expected, got, hint))
+
+    def _fault(self, line: int | None, *texts: str) -> Fault:
+        where, expected, got, hint = (text[:_LONGEST] for text in texts)
+        return Fault(self.path, line, where[:_MOST_NAMES], expected, got, hint)
 
     def near(self, got: str, known: Iterable[str]) -> str:
         """As :func:`agentface.errors.did_you_mean`, of the first 100 names; nothing where no more is told."""
