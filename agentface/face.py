@@ -29,6 +29,7 @@ from agentface.requests import (
     LookAt,
     Neutral,
     Request,
+    SetActionUnit,
     SetEmotion,
     SetEmotions,
     SetGaze,
@@ -147,6 +148,12 @@ class Face:
         None releases it: a muscle goes back to the emotions, an angle to 0.
         """
         self.apply(SetParameter(name, value, fade))
+
+    def set_action_unit(
+        self, number: int, intensity: float | str, *, side: str | None = None, fade: float = FADE_S
+    ) -> None:
+        """Show an action unit of FACS at 0..1, or at a letter A to E, on both sides, or on ``left`` or ``right``."""
+        self.apply(SetActionUnit(number, intensity, side, fade))  # type: ignore[arg-type]  # takes letters, keeps numbers
 
     def set_jaw(self, opening: float | None, *, fade: float = FADE_S) -> None:
         """Hold the jaw open at 0..1 of its widest opening; None releases it."""
@@ -298,8 +305,9 @@ class Face:
         """What the face is doing now, JSON-ready.
 
         ``face``; ``emotion``, the six target intensities; ``shown``, the ``emotion``, the ``contractions`` and the
-        ``shares`` of signed movements as drawn now; ``speech``, null while the face does not speak; ``gaze_deg``, yaw
-        and pitch; ``frame_ms``, what the last step took; ``messages`` understood; ``errors``, the count of malformed,
+        ``shares`` of signed movements as drawn now; ``action_units``, the targets of those that are set; ``drivers``,
+        the parameters that each channel moves; ``speech``, null while the face does not speak; ``gaze_deg``, yaw and
+        pitch; ``frame_ms``, what the last step took; ``messages`` understood; ``errors``, the count of malformed,
         unknown and rejected ones.
         """
         emotion, pose = self.channels.emotion, self.pose
@@ -312,6 +320,8 @@ class Face:
                 "contractions": {name: round(pose[name], 4) for name in CONTRACTIONS},
                 "shares": {name: round(pose[name], 4) for name in HELD if name not in CONTRACTIONS},
             },
+            "action_units": self.channels.action_units.shown,
+            "drivers": self.channels.drivers(),
             "speech": None,
             "gaze_deg": [round(math.degrees(pose[name]), 3) for name in ("gaze_yaw", "gaze_pitch")],
             "frame_ms": round(self._frame_ms, 3),

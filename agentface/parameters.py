@@ -218,6 +218,8 @@ NAMES: tuple[str, ...] = tuple(parameter.name for parameter in PARAMETERS)
 COUNT = len(PARAMETERS)
 MUSCLES: tuple[str, ...] = tuple(name for name, row in _TABLE.items() if row.unit in _FRACTIONS)
 """What a rule may contract: muscles without their side, and the jaw."""
+PLAIN_NAMES: tuple[str, ...] = tuple(_TABLE)
+"""All names without side."""
 CONTRACTIONS: tuple[str, ...] = tuple(parameter.name for parameter in PARAMETERS if parameter.contracts)
 """The parameters that are 0..1, sides apart: every muscle, and the jaw."""
 HELD: tuple[str, ...] = tuple(parameter.name for parameter in PARAMETERS if parameter.held)
@@ -253,7 +255,7 @@ def indices_of(muscle: str) -> tuple[int, ...]:
         return (_BY_NAME[muscle].index,)
     if f"{muscle}_l" in _BY_NAME:
         return tuple(_BY_NAME[f"{muscle}_{side}"].index for side in SIDES)
-    raise UnknownNameError("muscle", muscle, (*MUSCLES, *NAMES))
+    raise UnknownNameError("parameter", muscle, (*PLAIN_NAMES, *NAMES))
 
 
 @cache
@@ -264,9 +266,9 @@ def muscle_names() -> tuple[str, ...]:
 
 @cache
 def parameter_names() -> tuple[str, ...]:
-    """The names that a parameter is known by: muscles without side, all parameters, and angles that end in ``_deg``."""
+    """The names that a parameter is known by: without side, with it, and angles that end in ``_deg``."""
     angles = (f"{known.name}_deg" for known in PARAMETERS if known.unit == "rad")
-    return tuple(dict.fromkeys((*MUSCLES, *NAMES, *angles)))
+    return tuple(dict.fromkeys((*PLAIN_NAMES, *NAMES, *angles)))
 
 
 def check_degrees(name: str, degrees: Any) -> float:

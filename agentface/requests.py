@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, Any, Protocol
 from agentface.conventions import check_duration, check_finite, check_fraction, check_range
 from agentface.emotion.state import NEUTRAL, EmotionState, canonical_or_neutral
 from agentface.errors import InvalidValueError, UnknownNameError
+from agentface.facs.action_units import check_intensity, check_side, check_unit
 from agentface.parameters import PARAMETERS, check_degrees, indices_of, muscle_names, parameter, parameter_names
 
 if TYPE_CHECKING:
@@ -216,6 +217,40 @@ class SetParameter(Request):
             face.channels.muscles.release(self.fade, self.name)
         else:
             face.channels.muscles.set(self.name, self.value, self.fade)
+
+
+@dataclass(frozen=True, slots=True)
+class SetActionUnit(Request):
+    """One action unit of FACS, beside what the emotions show.
+
+    Attributes:
+        number: of ``rules/action_units.yaml``; also text such as ``AU12``.
+        intensity: 0..1, or one of FACS' letters A to E.
+        side: ``left`` or ``right`` of the person, or None for both; kept as ``l`` and ``r``.
+        fade: seconds.
+    """
+
+    number: int
+    intensity: float
+    side: str | None = None
+    fade: float = FADE_S
+
+    def __post_init__(self) -> None:
+        self._keep(
+            number=check_unit(self.number),
+            intensity=check_intensity(self.intensity),
+            side=check_side(self.side),
+            fade=check_duration("fade", self.fade),
+        )
+
+    @property
+    def key(self) -> tuple[Hashable, ...]:
+        """Each unit by itself, on each side."""
+        return type(self).__name__, self.number, self.side
+
+    def apply(self, face: Movable) -> None:
+        """Tell the action units' channel."""
+        face.channels.action_units.set(self.number, self.intensity, self.side, self.fade)
 
 
 @dataclass(frozen=True, slots=True)

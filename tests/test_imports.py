@@ -21,7 +21,7 @@ LAYERS = (
     ("parameters", "clock", "kernel"),
     ("mesh",),
     ("head",),
-    ("emotion", "deform"),
+    ("emotion", "deform", "facs"),
     ("tissue",),
     ("motion",),
     ("requests",),

@@ -13,6 +13,7 @@ import agentface
 from agentface.config import Document
 from agentface.emotion.tables import load_blends, load_emotions
 from agentface.errors import AgentFaceError
+from agentface.facs.action_units import load_action_units
 from agentface.head.look import load_look, read_look
 from agentface.head.model import load_model
 from agentface.io.emotionml import load_emotionml
@@ -22,7 +23,6 @@ from agentface.io.sequence import SequenceWriter
 from agentface.io.video import VideoWriter
 from agentface.mesh.glb import read_glb, write_glb
 from agentface.resources import face_folder, rules_file
-from agentface.studies.calibration.action_units import load_action_units
 from agentface.tissue.reading import anatomy_file, read_tissue, tissue_of
 from agentface.view.gl.context import read_source
 from tests.heads import head_model

@@ -19,6 +19,7 @@ from agentface.requests import (
     LookAt,
     Neutral,
     Request,
+    SetActionUnit,
     SetEmotion,
     SetEmotions,
     SetGaze,
@@ -36,6 +37,7 @@ ANY_REQUEST = st.one_of(
     st.builds(Neutral, FADES),
     st.builds(SetMuscle, st.sampled_from(MUSCLES), st.none() | FRACTIONS, FADES),
     st.builds(SetParameter, st.sampled_from(NAMES), st.none() | FRACTIONS.map(lambda v: 0.1 * v), FADES),
+    st.builds(SetActionUnit, st.sampled_from((1, 12, 30, 51)), FRACTIONS, st.sampled_from((None, "left")), FADES),
     st.builds(SetGaze, st.floats(-50, 50), st.floats(-40, 40), FADES),
     st.builds(LookAt, st.floats(-0.2, 0.2), st.floats(-0.2, 0.2), st.floats(0.5, 2), FADES),
     st.builds(SetHead, st.floats(-80, 80), st.floats(-60, 60), st.floats(-50, 50), FADES),
@@ -62,7 +64,8 @@ def motion(face, plan):
 def test_every_kind_is_tried_here():
     made = {name for name, kind in vars(requests).items() if isinstance(kind, type) and issubclass(kind, Request)}
     assert made - {"Request"} == {
-        "SetEmotion", "SetEmotions", "Neutral", "SetMuscle", "SetParameter", "SetGaze", "LookAt", "SetHead", "Blink",
+        "SetEmotion", "SetEmotions", "Neutral", "SetMuscle", "SetParameter", "SetActionUnit", "SetGaze", "LookAt",
+        "SetHead", "Blink",
     }  # fmt: skip
 
 
@@ -97,6 +100,7 @@ def test_the_methods_of_a_face_make_requests(face):
     face.set_muscle("risorius", 0.5)
     face.set_muscle("risorius", None, fade=0)
     face.set_parameter("head_roll_deg", 10)
+    face.set_action_unit(12, "C", side="left")
     face.set_jaw(0.3)
     face.set_gaze(10, -5)
     face.look_at(np.array([0.1, 0.0, 0.6]))
@@ -109,6 +113,7 @@ def test_the_methods_of_a_face_make_requests(face):
         SetMuscle("risorius", 0.5),
         SetMuscle("risorius", None, 0.0),
         SetParameter("head_roll", math.radians(10)),
+        SetActionUnit(12, 0.5, "l"),
         SetMuscle("jaw_open", 0.3),
         SetGaze(10.0, -5.0),
         LookAt(0.1, 0.0, 0.6),

@@ -74,9 +74,9 @@ def calibrate(
 
 def _measure(faces: Sequence[str] | None, deformer: str, output: str | None, json_file: str | None) -> None:
     from agentface.deform.protocol import make_deformer
+    from agentface.facs.action_units import load_action_units
     from agentface.head.model import load_model
     from agentface.resources import face_names
-    from agentface.studies.calibration.action_units import load_action_units
     from agentface.studies.calibration.agreement import measure
     from agentface.studies.calibration.calibrate import table
 
@@ -106,8 +106,8 @@ def _renew(path: Path, table: str, deformer: str) -> None:
 
 
 def _fit(face: str, deformer: str, starts: int, seed: int, dry_run: bool, json_file: str | None) -> None:
+    from agentface.facs.action_units import load_action_units
     from agentface.io.files import check_writable, write_file
-    from agentface.studies.calibration.action_units import load_action_units
     from agentface.studies.calibration.fits import fit_of
     from agentface.studies.calibration.limits import limits_of, missed
 

@@ -112,8 +112,8 @@ def _faults_in(read: Callable[[], object]) -> list[Fault]:
 def _rule_readers() -> dict[str, _Loader]:
     from agentface.emotion.tables import load_blends, load_emotions
     from agentface.emotion.vocabularies import load_vocabularies
+    from agentface.facs.action_units import load_action_units
     from agentface.motion.conflicts import load_conflicts
-    from agentface.studies.calibration.action_units import load_action_units
 
     return {
         "emotions.yaml": load_emotions,

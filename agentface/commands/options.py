@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeAlias, TypeVar
 
 import click
 from click.core import ParameterSource
@@ -77,6 +78,34 @@ def address(_: click.Context, __: click.Parameter, value: str) -> tuple[str, int
     return host.strip("[]"), int(port)
 
 
+AskedUnit: TypeAlias = tuple[str, str | float, str | None]
+"""An action unit's number, its intensity or letter, its side."""
+
+
+def action_units(_: click.Context, __: click.Parameter, values: Sequence[str]) -> list[AskedUnit]:
+    """``N=V``, ``N=LETTER``, or for one side ``NL=V`` or ``NR=V``, several times or joined by commas or plus signs."""
+    found: list[AskedUnit] = []
+    for part in (part.strip() for value in values for part in value.replace("+", ",").split(",")):
+        match = re.fullmatch(r"(?:AU)?\s*(\d+)([LR]?)\s*=\s*(.+)", part, re.IGNORECASE)
+        if match is None:
+            raise click.BadParameter(f"expected N=V, got {part!r}; for example 12=0.8, 12=C or, on the left, 12L=0.8")
+        number, side, level = match.groups()
+        try:
+            intensity: str | float = float(level)
+        except ValueError:
+            intensity = level
+        found.append((number, intensity, side.lower() or None))
+    return found
+
+
+action_unit_option = click.option(
+    "--au",
+    "action_units",
+    multiple=True,
+    callback=action_units,
+    metavar="N=V",
+    help="An action unit of FACS, 0..1 or a letter A to E; 12L=0.8 for the left side alone.",
+)
 emotion_option = click.option(
     "--emotion",
     "emotions",

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import click
 
 from agentface.commands.options import (
+    action_unit_option,
     angles,
     assignments,
     camera_option,
@@ -21,6 +22,7 @@ from agentface.commands.options import (
 )
 
 if TYPE_CHECKING:
+    from agentface.commands.options import AskedUnit
     from agentface.requests import Request
 
 
@@ -34,6 +36,7 @@ if TYPE_CHECKING:
     metavar="NAME=V",
     help="A muscle, 0..1.",
 )
+@action_unit_option
 @click.option("--gaze", callback=angles, metavar="YAW,PITCH", help="Degrees to the person's left, and upward.")
 @click.option(
     "--look-at",
@@ -62,6 +65,7 @@ def render(
     emotions: dict[str, float],
     muscles: dict[str, float],
     parameters: dict[str, float],
+    action_units: list[AskedUnit],
     gaze: tuple[float, float] | None,
     look_at: tuple[float, float, float] | None,
     jaw: float | None,
@@ -81,7 +85,7 @@ def render(
     from agentface.emotion.state import EmotionState
     from agentface.io.files import check_writable
     from agentface.io.picture import check_picture_name, write_picture
-    from agentface.requests import LookAt, SetEmotions, SetGaze, SetMuscle, SetParameter
+    from agentface.requests import LookAt, SetActionUnit, SetEmotions, SetGaze, SetMuscle, SetParameter
 
     if gaze is not None and look_at is not None:
         raise click.UsageError("--gaze and --look-at both say where the eyes look: give one of them")
@@ -89,6 +93,7 @@ def render(
     check_writable(output)
     requests: list[Request] = [SetEmotions(EmotionState.of(emotions), 0.0)]
     requests += [SetMuscle(name, contraction, 0.0) for name, contraction in muscles.items()]
+    requests += [SetActionUnit(number, level, side, 0.0) for number, level, side in action_units]  # type: ignore[arg-type]
     if jaw is not None:
         requests.append(SetMuscle("jaw_open", jaw, 0.0))
     if gaze is not None:

@@ -11,6 +11,7 @@ import numpy.typing as npt
 
 from agentface.conventions import Doubles, Floats
 from agentface.errors import InvalidValueError, UnknownNameError
+from agentface.motion.action_units import ActionUnitChannel
 from agentface.motion.blink import BlinkChannel
 from agentface.motion.channel import Channel, Rank
 from agentface.motion.conflicts import Conflicts, default_conflicts
@@ -77,9 +78,9 @@ def _compact(places: list[int]) -> slice | npt.NDArray[np.intp]:
 class Mixer(MutableMapping[str, Channel]):
     """Channels by name; each is blended over those of lower priority, by the ways and priorities of its rank.
 
-    The face's own are ``emotion``, ``gaze``, ``head``, ``blink`` and ``muscles``, also to be had as attributes; they
-    stay. A program adds others, ``mixer["breath"] = channel`` or :meth:`add`, and deletes them again; a face shows it
-    from its next step on.
+    The face's own are ``emotion``, ``gaze``, ``head``, ``action_units``, ``blink`` and ``muscles``, also to be had as
+    attributes; they stay. A program adds others, ``mixer["breath"] = channel`` or :meth:`add`, and deletes them again;
+    a face shows it from its next step on.
 
     Args:
         rules: what makes contractions of emotions.
@@ -97,6 +98,7 @@ class Mixer(MutableMapping[str, Channel]):
         self.emotion = self._own("emotion", EmotionChannel(rules, gains))
         self.gaze = self._own("gaze", TurnChannel("gaze"))
         self.head = self._own("head", TurnChannel("head"))
+        self.action_units = self._own("action_units", ActionUnitChannel())
         self.blink = self._own("blink", BlinkChannel())
         self.muscles = self._own("muscles", MuscleChannel())
         self._fixed = frozenset(self._layers)
@@ -151,6 +153,32 @@ class Mixer(MutableMapping[str, Channel]):
             raise self._blame(wanted) from None
         self._wanted = wanted
         return self._pose
+
+    def drivers(self) -> dict[str, list[str]]:
+        """Which parameters each channel moves now, as far as another one does not replace them: names by channel.
+
+        A channel that moves nothing is left out.
+        """
+        moved: dict[str, list[str]] = {}
+        hidden: set[str] = set()
+        order = {name: number for number, name in enumerate(self._layers)}
+        wanted = {name: bool(layer.write()) for name, layer in self._layers.items()}
+        rows = [
+            (layer.rank.priority_of(parameter_), order[name], name, row, parameter_)
+            for name, layer in self._layers.items()
+            if wanted[name]
+            for row, parameter_ in enumerate(layer.names)
+        ]
+        for _, _, name, row, parameter_ in sorted(rows, reverse=True):
+            layer = self._layers[name]
+            way, value, weight = layer.rank.way_of(parameter_), layer.values[row], layer.weights[row]
+            idle = 1.0 if way == "scale" else 0.0
+            if weight <= 0.0 or parameter_ in hidden or (way != "replace" and value == idle):
+                continue
+            moved.setdefault(name, []).append(parameter_)
+            if way == "replace" and weight >= 1.0:
+                hidden.add(parameter_)
+        return {name: sorted(moved[name], key=lambda shown: parameter(shown).index) for name in order if name in moved}
 
     def __getitem__(self, name: str) -> Channel:
         if name not in self._layers:

@@ -9,9 +9,9 @@ import pytest
 
 from agentface.emotion.inference import default_inference
 from agentface.emotion.state import EMOTIONS, EmotionState
+from agentface.facs.action_units import load_action_units
 from agentface.parameters import FacePose
 from agentface.resources import face_names
-from agentface.studies.calibration.action_units import load_action_units
 from tests.heads import deformer_of, head_model
 
 FOLDER = Path(__file__).parent / "goldens"

@@ -18,10 +18,10 @@ from agentface.deform.muscles.combine import Combiner
 from agentface.emotion.inference import default_inference
 from agentface.emotion.state import EMOTIONS, EmotionState
 from agentface.errors import DataError
+from agentface.facs.action_units import load_action_units
 from agentface.head.model import load_model
 from agentface.head.regions import with_sides
 from agentface.parameters import VECTOR_MUSCLES, FacePose, indices_of
-from agentface.studies.calibration.action_units import load_action_units
 from tests.deform.conflicts import Edges
 from tests.heads import head_model
 

@@ -14,6 +14,7 @@ from agentface.requests import (
     LookAt,
     Neutral,
     Request,
+    SetActionUnit,
     SetEmotion,
     SetEmotions,
     SetGaze,
@@ -128,6 +129,11 @@ def _parameter(arguments: Sequence[Any]) -> Request:
     return SetParameter(*_named(arguments))
 
 
+def _au(arguments: Sequence[Any]) -> Request:
+    _count(arguments, "unit intensity [side]", 2, 3)
+    return SetActionUnit(*arguments)
+
+
 def _gaze(arguments: Sequence[Any]) -> Request:
     _count(arguments, "yaw_deg pitch_deg [duration_s]", 2, 3)
     return SetGaze(*arguments)
@@ -177,6 +183,7 @@ _READERS: dict[str, Reader] = {
     "neutral": _neutral,
     "muscle": _muscle,
     "parameter": _parameter,
+    "au": _au,
     "gaze": _gaze,
     "look_at": _look_at,
     "head": _head,

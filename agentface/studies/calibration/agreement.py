@@ -8,10 +8,9 @@ import numpy as np
 
 from agentface.conventions import Floats
 from agentface.deform.protocol import DEFAULT_DEFORMER, Deformer, make_deformer
+from agentface.facs.action_units import ActionUnit
 from agentface.head.model import HeadModel
 from agentface.head.regions import REGIONS
-from agentface.parameters import FacePose
-from agentface.studies.calibration.action_units import ActionUnit
 
 PART_OF_PEAK = 0.25
 AS_FAR = 0.99
@@ -62,12 +61,14 @@ def agreement(model: HeadModel, muscles: Floats, artists: Floats, *, fitted: boo
 
 
 def measure(model: HeadModel, units: dict[int, ActionUnit], deformer: Deformer | None = None) -> dict[int, Agreement]:
-    """The agreement of every action unit in ``units`` on a face, with a deformer of it, or with the geometric one."""
+    """The agreement of the action units that artists' shapes make, with a deformer of a face, or the geometric one."""
     deformer = make_deformer(DEFAULT_DEFORMER, model) if deformer is None else deformer
     rest = model.vertices
     result = {}
     for number, unit in units.items():
-        moved = deformer.at(FacePose.of(**unit.muscles)).vertices - rest
+        if not unit.shapes:
+            continue
+        moved = deformer.at(unit.pose).vertices - rest
         result[number] = agreement(model, moved, unit.shape(model), fitted=unit.fitted)
     return result
 

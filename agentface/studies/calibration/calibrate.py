@@ -8,10 +8,10 @@ import numpy as np
 import yaml
 
 from agentface.deform.protocol import DEFAULT_DEFORMER, make_deformer
+from agentface.facs.action_units import load_action_units
 from agentface.head.model import HeadModel, load_model
 from agentface.head.muscles import MusclesFile, read_muscles
 from agentface.resources import data_folder
-from agentface.studies.calibration.action_units import load_action_units
 from agentface.studies.calibration.agreement import Agreement, measure
 from agentface.studies.calibration.fit import Fitter, Progress, groups
 

@@ -12,10 +12,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from agentface.conventions import SIDES, Doubles, Indices
+from agentface.facs.action_units import ActionUnit
 from agentface.head.model import HeadModel
 from agentface.head.muscles import Anchor, MuscleRow, MusclesFile, anchor_point, border_weights, off_the_bone
 from agentface.parameters import VECTOR_MUSCLES
-from agentface.studies.calibration.action_units import ActionUnit
 from agentface.studies.calibration.field import ROWS, displacements
 
 _ORIGIN_WITHIN = 0.40

@@ -7,11 +7,11 @@ from pathlib import Path
 from typing import NamedTuple
 
 from agentface.deform.protocol import TISSUE_DEFORMERS, make_deformer
+from agentface.facs.action_units import load_action_units
 from agentface.head.model import HeadModel, load_model
 from agentface.head.muscles import read_muscles
 from agentface.resources import face_folder
 from agentface.studies.calibration import calibrate as vector_muscles
-from agentface.studies.calibration.action_units import load_action_units
 from agentface.studies.calibration.agreement import Agreement, measure
 from agentface.studies.calibration.fit import Progress, groups
 from agentface.studies.calibration.tissue_fit import TissueFitter

@@ -13,8 +13,8 @@ import numpy as np
 
 from agentface.conventions import SIDES, Doubles
 from agentface.errors import InvalidValueError, Place
+from agentface.facs.action_units import ActionUnit, load_action_units
 from agentface.head.model import HeadModel
-from agentface.studies.calibration.action_units import ActionUnit, load_action_units
 from agentface.studies.calibration.tissue_knobs import EXACT, knobs, turned, values_of
 from agentface.studies.calibration.tissue_loss import ShapeLoss
 from agentface.tissue.columns import Columns, coloured, pack, unpacked

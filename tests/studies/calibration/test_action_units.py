@@ -5,9 +5,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from agentface.errors import DataError
+from agentface.facs.action_units import ActionUnit, load_action_units
 from agentface.parameters import VECTOR_MUSCLES
 from agentface.resources import rules_file
-from agentface.studies.calibration.action_units import ActionUnit, load_action_units
 from agentface.studies.calibration.fit import groups
 
 NAMES = [name[:-2] for name in VECTOR_MUSCLES[:16:2]]

@@ -9,8 +9,8 @@ import pytest
 
 from agentface.deform.protocol import make_deformer
 from agentface.errors import DataError, OutputError
+from agentface.facs.action_units import load_action_units
 from agentface.resources import face_names
-from agentface.studies.calibration.action_units import load_action_units
 from agentface.studies.calibration.agreement import Agreement, agreement, measure
 from agentface.studies.calibration.calibrate import table
 from agentface.studies.calibration.limits import END, begin_of, between_marks, limits_of, missed, with_table

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from agentface.deform.muscles.combine import parallel
+from agentface.facs.action_units import ActionUnit
 from agentface.head.model import load_model
 from agentface.head.muscles import MusclesFile, anchor_point, read_muscles
 from agentface.mesh.glb import Shape
-from agentface.studies.calibration.action_units import ActionUnit
 from agentface.studies.calibration.agreement import measure
 from agentface.studies.calibration.calibrate import anatomy_file
 from agentface.studies.calibration.fit import Fitter, groups

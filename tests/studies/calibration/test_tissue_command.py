@@ -10,8 +10,8 @@ from click.testing import CliRunner
 from agentface.cli import cli
 from agentface.errors import DataError
 from agentface.face import Face
+from agentface.facs.action_units import load_action_units
 from agentface.studies.calibration import fits
-from agentface.studies.calibration.action_units import load_action_units
 from agentface.studies.calibration.agreement import Agreement
 from agentface.tissue.reading import anatomy_file, read_tissue
 from agentface.tissue.tissue_file import TISSUE_MUSCLES

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from agentface.errors import InvalidValueError, Place
+from agentface.facs.action_units import load_action_units
 from agentface.head.model import load_model
-from agentface.studies.calibration.action_units import load_action_units
 from agentface.studies.calibration.tissue_fit import MuscleFit, TissueFitter
 from agentface.tissue.layers import EPIDERMIS, HYPODERMIS
 from agentface.tissue.reading import anatomy_file, read_tissue

@@ -1,0 +1,1 @@
+"""Action units of FACS (Ekman, Friesen, Hager 2002): what each contracts or turns."""
