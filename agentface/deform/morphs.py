@@ -1,8 +1,8 @@
 """What moves the skin by a shape: jaw forward and aside, halves of the lips, cheeks, nostrils, nose, ears.
 
 A parameter of the value s moves each of its vertices by |s| times its way at that end of its range, turned as far as
-the vertex turns with the jaw; what several do adds up. A half of a lip is one muscle, orbicularis oris: where it would
-be contracted by more than 1, with what the whole of it puckers and presses, its morphs are as much less.
+the vertex turns with the jaw; what several do adds up. A half of a lip is a part of one muscle, orbicularis oris: its
+morphs share what the whole muscle leaves, 1 less what that puckers and presses.
 """
 
 from __future__ import annotations
@@ -104,12 +104,17 @@ def jaw_slide(slides: JawSlides, values: Floats) -> tuple[float, float]:
     return ahead, aside
 
 
+def share_of_lip(left: np.float32, used: np.float32) -> np.float32:
+    """How much of what the morphs of a half of a lip ask for, ``used``, they get when so much is ``left`` of it."""
+    return np.float32(1.0) if used <= left else left / used
+
+
 def apply(tables: MorphTables, values: Floats, points: Floats) -> None:
     """Move ``points (P, 3)`` m in place, to the parameters ``values``."""
     levels = np.maximum(tables.signs * values[tables.parameters], np.float32(0.0))
+    left = max(np.float32(0.0), np.float32(1.0) - values[tables.whole].sum())
     for half in range(LIP_HALVES):
-        used = values[tables.whole].sum() + levels[tables.lips == half].sum()
-        levels[tables.lips == half] /= max(np.float32(1.0), used)
+        levels[tables.lips == half] *= share_of_lip(left, levels[tables.lips == half].sum())
     active = np.repeat(levels, np.diff(tables.first))
     chosen = active > 0.0
     ways = active[chosen, None] * tables.ways[chosen]

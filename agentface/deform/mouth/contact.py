@@ -32,6 +32,8 @@ _ARCH_KEPT = 0.3  # of its distance at rest that a vertex keeps from the teeth
 _SOFTEST = 0.0012  # m, over which the teeth begin to push
 _ROUNDING = 2e-7  # m
 _CLEAR = 2e-5  # m, that lips keep between them where they did at rest
+APART = np.float32(1.5e-4)
+"""m more between lips of which halves move by themselves: they slide along each other at a slant to the rings."""
 _NEAREST = 0.0004  # m, vertices that lie nearer to the teeth at rest, or behind them, are not pushed
 
 
@@ -52,6 +54,7 @@ class ContactTables(NamedTuple):
         arch: ``(2, 4)``, the numbers of both :class:`agentface.deform.mouth.dental_arch.Arch`.
         hinge, widest, jaw, slides: the turn of the lower arch, and how far it slides before.
         press, shut_from: where press stands in a pose, and the level from which it shuts the lips.
+        halves: ``(H,)`` where what moves a half of a lip stands.
     """
 
     grid: Indices
@@ -73,6 +76,7 @@ class ContactTables(NamedTuple):
     slides: JawSlides
     press: int
     shut_from: float
+    halves: Indices
 
 
 def prepare(model: HeadModel) -> ContactTables:
@@ -107,6 +111,7 @@ def prepare(model: HeadModel) -> ContactTables:
         slides=jaw_slides(model),
         press=indices_of("orbicularis_oris_press")[0],
         shut_from=model.lips.orbicularis_oris.roll_from,
+        halves=np.array(sorted({morph.index for morph in model.morphs if morph.lip >= 0}), np.int32),
     )
 
 
@@ -115,9 +120,10 @@ def apply(tables: ContactTables, values: Floats, points: Floats) -> None:
 
     Teeth push along x and z in their own frame: the lower arch's turns with the jaw.
     """
+    apart = APART * min(np.float32(1.0), np.abs(values[tables.halves]).sum())
     for _ in range(ROUNDS if values[tables.press] > 0.0 else 1):
         _close_lips(tables, values[tables.press], points)
-        _part_lips(tables, points)
+        _part_lips(tables, points, apart)
     points[tables.vertex, ::2] += _push_out(tables, 0, points[tables.vertex])
     angle = np.float32(tables.widest * values[tables.jaw])
     cosine, sine = np.cos(angle), np.sin(angle)
@@ -130,7 +136,7 @@ def apply(tables: ContactTables, values: Floats, points: Floats) -> None:
     across, ahead = _push_out(tables, 1, places).T
     points[tables.vertex] += np.stack([across, -sine * ahead, cosine * ahead], axis=1)
     for _ in range(PARTINGS):
-        _part_lips(tables, points)
+        _part_lips(tables, points, apart)
 
 
 def _close_lips(tables: ContactTables, press: float, points: Floats) -> None:
@@ -149,12 +155,12 @@ def _close_lips(tables: ContactTables, press: float, points: Floats) -> None:
     points[tables.grid, 1] += tables.fall[:, None] * move
 
 
-def _part_lips(tables: ContactTables, points: Floats) -> None:
+def _part_lips(tables: ContactTables, points: Floats, apart: np.float32) -> None:
     """Every vertex where the lips touch is held against the height of the other lip at its x: both give way by half.
 
-    The two columns of the other lip between which it lies give way by shares that vanish where they cease to be its
-    neighbours, so that lips that slide along each other are pushed without a jump; the largest push counts. Where the
-    lips join, in the corners, both go together.
+    They are kept ``apart`` m. The two columns of the other lip between which it lies give way by shares that vanish
+    where they cease to be its neighbours, so that lips that slide along each other are pushed without a jump; the
+    largest push counts. Where the lips join, in the corners, both go together.
     """
     up, down = np.zeros((2, tables.grid.shape[1]), np.float32)
     lips = (
@@ -163,7 +169,7 @@ def _part_lips(tables: ContactTables, points: Floats) -> None:
     )
     for own, other, at_rest, sign, own_push, other_push in lips:
         overlap, second, part, inside = _overlaps(tables.grid, own, other, sign, points)
-        push = np.float32(0.5) * np.maximum(overlap - at_rest, np.float32(0.0))
+        push = np.float32(0.5) * np.maximum(overlap - at_rest + apart, np.float32(0.0))
         push *= np.clip(inside / CORNER, np.float32(0.0), np.float32(1.0)) ** 2
         push[..., [0, -1]] = 0.0
         np.maximum.at(own_push, np.broadcast_to(own, push.shape), push)

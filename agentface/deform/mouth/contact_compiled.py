@@ -10,7 +10,7 @@ import numpy as np
 from agentface.conventions import Floats, Indices
 from agentface.deform.lanes import LANES
 from agentface.deform.morphs_compiled import jaw_slide
-from agentface.deform.mouth.contact import CORNER, FARTHEST, PARTINGS, ROUNDS, SPREAD, STEEP, ContactTables
+from agentface.deform.mouth.contact import APART, CORNER, FARTHEST, PARTINGS, ROUNDS, SPREAD, STEEP, ContactTables
 from agentface.deform.simd import choose, larger, load, smaller, splat, store
 from agentface.kernel import kernel
 
@@ -30,9 +30,13 @@ class Overlaps(NamedTuple):
 @kernel(error_model="numpy")
 def apply(tables: ContactTables, values: Floats, points: Floats) -> None:
     """Shuts pressed lips, parts lips that overlap, and pushes them out of the teeth; as its twin."""
+    apart = _ZERO
+    for k in range(tables.halves.shape[0]):
+        apart += abs(values[tables.halves[k]])
+    apart = APART * min(_ONE, apart)
     for _ in range(ROUNDS if values[tables.press] > _ZERO else 1):
         _close_lips(tables, values[tables.press], points)
-        _part_lips(tables, points)
+        _part_lips(tables, points, apart)
     angle = np.float32(tables.widest * values[tables.jaw])
     cosine, sine = np.float32(math.cos(angle)), np.float32(math.sin(angle))
     hinge_y, hinge_z = tables.hinge[0], tables.hinge[1]
@@ -50,7 +54,7 @@ def apply(tables: ContactTables, values: Floats, points: Floats) -> None:
         points[vertex, 1] -= sine * ahead
         points[vertex, 2] += cosine * ahead
     for _ in range(PARTINGS):
-        if not _part_lips(tables, points):
+        if not _part_lips(tables, points, apart):
             break
 
 
@@ -110,12 +114,12 @@ def _gaps(tables: ContactTables, own: Indices, other: Indices, sign: np.float32,
 
 
 @kernel(error_model="numpy")
-def _part_lips(tables: ContactTables, points: Floats) -> bool:
+def _part_lips(tables: ContactTables, points: Floats, apart: np.float32) -> bool:
     """Whether any lip had to give way: where none had, another round would find none."""
     columns = tables.grid.shape[1]
     up, down = np.zeros(columns, np.float32), np.zeros(columns, np.float32)
-    any_up = _push_apart(tables, tables.upper, tables.lower, tables.overlap_upper, _ONE, points, up, down)
-    any_down = _push_apart(tables, tables.lower, tables.upper, tables.overlap_lower, -_ONE, points, down, up)
+    any_up = _push_apart(tables, tables.upper, tables.lower, tables.overlap_upper, apart, _ONE, points, up, down)
+    any_down = _push_apart(tables, tables.lower, tables.upper, tables.overlap_lower, apart, -_ONE, points, down, up)
     if not (any_up or any_down):
         return False
     move = up - down
@@ -140,6 +144,7 @@ def _push_apart(
     own: Indices,
     other: Indices,
     at_rest: Floats,
+    apart: np.float32,
     sign: np.float32,
     points: Floats,
     own_push: Floats,
@@ -153,7 +158,7 @@ def _push_apart(
         for facing in range(across.shape[0]):
             _overlap(across[facing], up[facing], other.shape[0], places[ring], heights[ring], sign, found)
             for k in range(1, own.shape[0] - 1):
-                push = _HALF * (found.overlap[k] - at_rest[k])
+                push = _HALF * (found.overlap[k] - at_rest[k] + apart)
                 inside = found.inside[k]
                 if push <= _ZERO or inside <= _ZERO:
                     continue
