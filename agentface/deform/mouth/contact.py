@@ -13,7 +13,7 @@ from agentface.deform.morphs import JawSlides, jaw_slide, jaw_slides
 from agentface.deform.mouth.dental_arch import arch_distance, fit_arch
 from agentface.deform.mouth.lip_grid import INNER_RINGS, SEAM_RING, LipGrid, column_places, lip_grid
 from agentface.head.model import HeadModel
-from agentface.parameters import indices_of
+from agentface.parameters import PARAMETERS, indices_of
 
 _Points = TypeVar("_Points", Floats, Doubles)
 _FIRST_RING, _LAST_RING = INNER_RINGS - 1, INNER_RINGS + 5
@@ -33,7 +33,7 @@ _SOFTEST = 0.0012  # m, over which the teeth begin to push
 _ROUNDING = 2e-7  # m
 _CLEAR = 2e-5  # m, that lips keep between them where they did at rest
 APART = np.float32(1.5e-4)
-"""m more between lips of which halves move by themselves: they slide along each other at a slant to the rings."""
+"""m more between lips that shapes move, too: they slide along each other at a slant to the rings."""
 _NEAREST = 0.0004  # m, vertices that lie nearer to the teeth at rest, or behind them, are not pushed
 
 
@@ -54,7 +54,7 @@ class ContactTables(NamedTuple):
         arch: ``(2, 4)``, the numbers of both :class:`agentface.deform.mouth.dental_arch.Arch`.
         hinge, widest, jaw, slides: the turn of the lower arch, and how far it slides before.
         press, shut_from: where press stands in a pose, and the level from which it shuts the lips.
-        halves: ``(H,)`` where what moves a half of a lip stands.
+        morphs: ``(H,)`` where what moves lips or jaw by a shape stands.
     """
 
     grid: Indices
@@ -76,7 +76,7 @@ class ContactTables(NamedTuple):
     slides: JawSlides
     press: int
     shut_from: float
-    halves: Indices
+    morphs: Indices
 
 
 def prepare(model: HeadModel) -> ContactTables:
@@ -111,7 +111,9 @@ def prepare(model: HeadModel) -> ContactTables:
         slides=jaw_slides(model),
         press=indices_of("orbicularis_oris_press")[0],
         shut_from=model.lips.orbicularis_oris.roll_from,
-        halves=np.array(sorted({morph.index for morph in model.morphs if morph.lip >= 0}), np.int32),
+        morphs=np.array(
+            [known.index for known in PARAMETERS if known.morphs and known.group in ("mouth", "jaw")], np.int32
+        ),
     )
 
 
@@ -120,7 +122,7 @@ def apply(tables: ContactTables, values: Floats, points: Floats) -> None:
 
     Teeth push along x and z in their own frame: the lower arch's turns with the jaw.
     """
-    apart = APART * min(np.float32(1.0), np.abs(values[tables.halves]).sum())
+    apart = APART * min(np.float32(1.0), np.abs(values[tables.morphs]).sum())
     for _ in range(ROUNDS if values[tables.press] > 0.0 else 1):
         _close_lips(tables, values[tables.press], points)
         _part_lips(tables, points, apart)

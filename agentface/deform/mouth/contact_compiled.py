@@ -31,8 +31,8 @@ class Overlaps(NamedTuple):
 def apply(tables: ContactTables, values: Floats, points: Floats) -> None:
     """Shuts pressed lips, parts lips that overlap, and pushes them out of the teeth; as its twin."""
     apart = _ZERO
-    for k in range(tables.halves.shape[0]):
-        apart += abs(values[tables.halves[k]])
+    for k in range(tables.morphs.shape[0]):
+        apart += abs(values[tables.morphs[k]])
     apart = APART * min(_ONE, apart)
     for _ in range(ROUNDS if values[tables.press] > _ZERO else 1):
         _close_lips(tables, values[tables.press], points)
