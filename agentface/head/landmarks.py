@@ -10,6 +10,7 @@ from pydantic import Field
 
 from agentface.config import Document, Table
 from agentface.conventions import SIDES, Floats
+from agentface.head.feature_points import FeaturePointRow, check_points
 
 LANDMARKS: tuple[str, ...] = (
     "hairline_middle", "glabella", "nasion", "nose_tip", "subnasale", "upper_lip_middle", "lower_lip_middle",
@@ -31,16 +32,16 @@ def both_sides(name: str) -> tuple[str, ...]:
 
 
 class LandmarkRow(Table):
-    """One landmark: the vertices whose mean it is, and its MPEG-4 feature point where it has one."""
+    """One landmark: the vertices whose mean it is."""
 
     vertices: Annotated[list[int], Field(min_length=1)]
-    feature_point: Annotated[str, Field(pattern=r"^(\d{1,2}\.\d{1,2})?$")] = ""
 
 
 class FeaturePointsFile(Table):
-    """``feature_points.yaml``."""
+    """``feature_points.yaml``: the landmarks, and the feature points of MPEG-4 by number."""
 
     landmarks: dict[str, LandmarkRow]
+    feature_points: dict[str, FeaturePointRow]
 
 
 class Landmarks(dict[str, Floats]):
@@ -55,7 +56,8 @@ class Landmarks(dict[str, Floats]):
 def read_landmarks(path: str | Path, vertex_count: int) -> FeaturePointsFile:
     """The checked table of a mesh of ``vertex_count`` vertices.
 
-    Raises DataError when a landmark is missing, unknown or names a vertex that the mesh does not have.
+    Raises DataError when a landmark or a feature point is missing, unknown or names a vertex that the mesh does not
+    have.
     """
     document = Document(path)
     file = document.parse(FeaturePointsFile)
@@ -70,6 +72,7 @@ def read_landmarks(path: str | Path, vertex_count: int) -> FeaturePointsFile:
         bad = [index for index in row.vertices if not 0 <= index < vertex_count]
         if bad:
             document.fault(("landmarks", name, "vertices"), f"vertices in 0..{vertex_count - 1}", str(bad))
+    check_points(document, file.feature_points, vertex_count)
     document.check()
     return file
 

@@ -17,6 +17,7 @@ from agentface.config import Table, load
 from agentface.conventions import SIDES, Floats, Indices, check_fraction
 from agentface.errors import DataError, Fault, InvalidValueError
 from agentface.head import asymmetry as own
+from agentface.head.feature_points import FeaturePointRow, check_parts
 from agentface.head.landmarks import Landmarks, place_landmarks, read_landmarks
 from agentface.head.morphs import MorphsFile, MorphSkin, PlacedMorph, place_morphs, read_morphs
 from agentface.head.muscle_set import MuscleSet
@@ -105,6 +106,7 @@ class HeadModel:
         parts: the other meshes: teeth, tongue, eyeballs.
         regions: the eleven regions and the sub-regions.
         landmarks: named points.
+        feature_points: the 84 points of MPEG-4 by number: see :mod:`agentface.mpeg4.feature_points`.
         eyes, jaw, lips, eyelids: the tables of the same names.
         muscles_file: the table of the vector muscles.
         wrinkles_file: the table of the trains of wrinkles that follow no single vector muscle.
@@ -127,6 +129,7 @@ class HeadModel:
     parts: dict[str, MeshArrays]
     regions: Regions
     landmarks: Landmarks
+    feature_points: dict[str, FeaturePointRow]
     eyes: EyesFile
     jaw: JawFile
     lips: LipsFile
@@ -279,6 +282,8 @@ def _read(folder: Path, muscles: MusclesFile | None, asymmetry: float) -> HeadMo
     tables = {
         name: read(folder / name, skin) for name, read in TABLES.items() if not (muscles and name == MUSCLES_FILE)
     }
+    counts = {name: len(meshes[name].attributes["POSITION"]) for name in PARTS}
+    check_parts(folder / "feature_points.yaml", tables["feature_points.yaml"].feature_points, counts)
     eyes, lips, eyelids = tables["eyes.yaml"], tables["lips.yaml"], tables["eyelids.yaml"]
     shapes = dict(skin.shapes)
     moves = np.zeros_like(vertices)
@@ -301,6 +306,7 @@ def _read(folder: Path, muscles: MusclesFile | None, asymmetry: float) -> HeadMo
         parts={name: _moved(meshes[name], part_moves[name]) for name in PARTS},
         regions=tables["regions.yaml"],
         landmarks=place_landmarks(tables["feature_points.yaml"], vertices, pupils),
+        feature_points=tables["feature_points.yaml"].feature_points,
         eyes=eyes,
         jaw=tables["jaw.yaml"],
         lips=lips,

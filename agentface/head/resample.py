@@ -10,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from agentface.conventions import SIDES, Floats, Indices
+from agentface.head.feature_points import renumbered
 from agentface.head.model import HeadModel
 from agentface.head.muscle_set import MuscleSet
 from agentface.head.regions import HALF_REGIONS, REGIONS, REST, SUB_REGIONS
@@ -121,6 +122,7 @@ def _build(model: HeadModel, parents: Any, owners: Any, triangles: Any, mirror: 
         "regions": replace(model.regions, region_of=model.regions.region_of[owners], ranges=ranges),
         "lips": _lips(model.lips, new_of_old),
         "eyelids": _eyelids(model.eyelids, new_of_old),
+        "feature_points": renumbered(model.feature_points, new_of_old),
         "coarse": model,
         "parents": parents,
         "place": new_of_old,

@@ -8,6 +8,7 @@ import numpy as np
 import yaml
 
 from agentface.config import load
+from agentface.head.build.feature_points import feature_points
 from agentface.head.build.head import METRES, Head, build_head, hinge
 from agentface.head.build.head_topology import HeadTopology
 from agentface.head.build.identity import Recipe, person
@@ -21,7 +22,7 @@ _CREDIT = "CC0 1.0: MakeHuman base mesh hm08 and targets, Face Units by Mika Suo
 _TITLES = {
     "regions.yaml": "First and last vertex of each region (Bui et al., section 2.1) and sub-region; limits in eye "
     "separations.",
-    "feature_points.yaml": "Named points of the face: the vertices whose mean each is, and its MPEG-4 feature point.",
+    "feature_points.yaml": "Named points of the face, each the mean of vertices, and the 84 feature points of MPEG-4.",
     "lips.yaml": "Rings of vertices round the mouth, from the seam outward; each half from the left corner to the "
     "right one; its muscle.",
     "eyelids.yaml": "Rings of vertices round each eye, from the lid's inner margin outward; each half from +x to -x; "
@@ -79,7 +80,7 @@ def _tables(topology: HeadTopology, head: Head, recipe: Recipe, parts: PartsFile
             "sub_regions": topology.sub_regions,
             "limits": parts.limits,
         },
-        "feature_points.yaml": {"landmarks": topology.landmarks},
+        "feature_points.yaml": {"landmarks": topology.landmarks, "feature_points": feature_points(topology)},
         "lips.yaml": {
             "rings": [{"upper": upper, "lower": lower} for upper, lower in lip_rings],
             **parts.lips.model_dump(),

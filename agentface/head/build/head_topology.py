@@ -39,16 +39,6 @@ _NEAREST = {
     "alare_l": (0.135, 6.87, 1.50), "upper_lip_side_l": (0.13, 6.705, 1.56), "lower_lip_side_l": (0.13, 6.53, 1.53),
     "cheek_l": (0.42, 6.75, 1.30), "jaw_side_l": (0.35, 6.36, 1.25), "gonion_l": (0.58, 6.50, 0.85),
 }  # fmt: skip
-_FEATURE_POINTS = {
-    "hairline_middle": "11.1", "menton": "2.1", "pogonion": "2.10", "upper_lip_middle": "8.1",
-    "lower_lip_middle": "8.2",
-    "mouth_corner_l": "8.3", "mouth_corner_r": "8.4", "subnasale": "9.15", "nose_tip": "9.3", "nasion": "9.12",
-    "lid_upper_l": "3.1", "lid_upper_r": "3.2", "lid_lower_l": "3.3", "lid_lower_r": "3.4", "outer_canthus_l": "3.7",
-    "outer_canthus_r": "3.12", "inner_canthus_l": "3.11", "inner_canthus_r": "3.8", "brow_inner_l": "4.1",
-    "brow_inner_r": "4.2", "brow_middle_l": "4.3", "brow_middle_r": "4.4", "brow_outer_l": "4.5", "brow_outer_r": "4.6",
-    "alare_l": "9.1", "alare_r": "9.2", "cheekbone_l": "5.3", "cheekbone_r": "5.4",
-}  # fmt: skip
-
 
 class HeadTopology:
     """What all faces of the base mesh share: triangles, vertex order, regions, rings, landmarks."""
@@ -161,7 +151,7 @@ class HeadTopology:
 
     @cached_property
     def landmarks(self) -> dict[str, dict[str, Any]]:
-        """The rows of ``feature_points.yaml``."""
+        """The landmarks of ``feature_points.yaml``."""
         found = {name: self._index_of(vertex) for name, vertex in _EXACT.items()}
         for name, place in _NEAREST.items():
             found[name] = int(np.linalg.norm(self.points - place, axis=1).argmin())
@@ -169,13 +159,7 @@ class HeadTopology:
             found[name] = self._lid_middle(ring_half)
         for name in [name for name in found if name.endswith("_l")]:
             found[f"{name[:-2]}_r"] = int(self.skin.mirror[found[name]])
-        return {
-            name: {
-                "vertices": [found[name]],
-                **({"feature_point": point} if (point := _FEATURE_POINTS.get(name)) else {}),
-            }
-            for name in sorted(found)
-        }
+        return {name: {"vertices": [found[name]]} for name in sorted(found)}
 
     def _lid_middle(self, half: int) -> int:
         ring = self.lid_rings("l")[LidRing.EDGE][half]
