@@ -20,7 +20,7 @@ from agentface.cache import tell_no_cache, version_folder
 
 _F = TypeVar("_F", bound=Callable[..., Any])
 _PACKAGE = Path(__file__).parent
-_ROOMS = ("deform", "emotion", "mesh", "tissue")
+_ROOMS = ("deform", "emotion", "mesh", "mpeg4", "tissue")
 
 
 def can_compile() -> bool:

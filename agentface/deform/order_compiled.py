@@ -31,7 +31,7 @@ from agentface.deform.tables import FaceTables
 from agentface.kernel import compiled_twin, kernel
 from agentface.parameters import VECTOR_MUSCLES, indices_of
 
-__all__ = ["Scratch", "deform", "finish", "frames", "new_scratch"]
+__all__ = ["Scratch", "deform", "finish", "frames", "new_scratch", "shape"]
 
 _FIRST_MUSCLE = indices_of(VECTOR_MUSCLES[0])[0]
 _FIRST, _LAST = int(Stage.VOLUMES), int(Stage.MIDPOINTS)
@@ -59,6 +59,15 @@ deform = compiled_twin(order.deform, globals(), error_model="numpy")
 
 
 @kernel(error_model="numpy")
+def shape(tables: FaceTables, scratch: Scratch, last: int, values: Floats) -> None:
+    """Move ``scratch.points`` to the pose ``values (COUNT,)``: by the vector muscles, then by the stages to ``last``."""
+    scratch.levels[:] = values[_FIRST_MUSCLE : _FIRST_MUSCLE + scratch.levels.shape[0]]
+    combine.slice_steps(scratch.levels, STEP, scratch.parts)
+    combine.contract(tables.skin.rest, tables.blocks, scratch.parts, scratch.points)
+    deform(_FIRST, last, tables.skin, values, scratch.points)
+
+
+@kernel(error_model="numpy")
 def frames(tables: FaceTables, scratch: Scratch, first: int, last: int, poses: Floats, faces: FaceArrays) -> None:
     """Write the faces of ``poses[first:last]`` into ``faces``, a row a face.
 
@@ -66,10 +75,7 @@ def frames(tables: FaceTables, scratch: Scratch, first: int, last: int, poses: F
     """
     for index in range(first, last):
         values = poses[index]
-        scratch.levels[:] = values[_FIRST_MUSCLE : _FIRST_MUSCLE + scratch.levels.shape[0]]
-        combine.slice_steps(scratch.levels, STEP, scratch.parts)
-        combine.contract(tables.skin.rest, tables.blocks, scratch.parts, scratch.points)
-        deform(_FIRST, _LAST, tables.skin, values, scratch.points)
+        shape(tables, scratch, _LAST, values)
         face = FaceArrays(
             faces.vertices[index],
             faces.normals[index],

@@ -1,0 +1,192 @@
+"""FAPs to the pose that shows them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from agentface.conventions import Doubles, Floats
+from agentface.errors import InvalidValueError
+from agentface.head.model import HeadModel
+from agentface.kernel import can_compile
+from agentface.mpeg4 import sight, solver
+from agentface.mpeg4.fap_fit import CLOSED, GAZE, LIDS, Looks, fap_fit, features_of
+from agentface.mpeg4.faps import FAP_COUNT
+from agentface.mpeg4.gaze import GivenAngles
+from agentface.mpeg4.meter import FapMeter
+from agentface.mpeg4.sight import Features
+from agentface.mpeg4.solver import Wish
+from agentface.parameters import COUNT, NEUTRAL, FacePose
+
+Mask = npt.NDArray[np.bool_]
+_SOFT = 0.05
+"""Of a FAP's range, how far beyond its reach a target may lead."""
+_ZERO, _BACK = 1e-3, 1e-3
+"""How strongly rest and the pose before hold, where every FAP is given."""
+_SHUT = 2.0
+"""The weight of an eye's being shut beside one for each lid."""
+_TOLD = 0.05
+"""Of a FAP's range: what is missed by more is told."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class FapSolution:
+    """The pose found for a frame of FAPs.
+
+    Attributes:
+        pose: what shows them.
+        moves: ``(COUNT,)`` bool, the parameters that the FAPs given determine; the others are as they were before.
+        shown: ``(68,)`` float32, what the pose shows of the FAPs that are read off points; FAPs of eyes and head as set.
+        missed: ``(68,)`` float32, shown less asked, of those given; 0 for the others.
+        out_of_reach: the numbers of those that the face cannot show so far: beyond its reach, without a range, or
+            missed by more than a twentieth of their range.
+        looks: how many poses were tried.
+        features: what the solver knows of the pose, for the next frame.
+    """
+
+    pose: FacePose
+    moves: Mask
+    shown: Floats
+    missed: Floats
+    out_of_reach: tuple[int, ...]
+    looks: int
+    features: Doubles
+
+
+class FapSolver:
+    """Finds poses of one face that show given FAPs; one frame at a time.
+
+    Args:
+        model: the face; what is found is exact for its geometric deformer.
+        steps: Gauss-Newton steps a frame at most.
+        compiled: False for the numpy form.
+
+    Raises InvalidValueError for ``steps`` that is no number from 1 on.
+    """
+
+    def __init__(self, model: HeadModel, *, steps: int = 3, compiled: bool = True) -> None:
+        if isinstance(steps, bool) or not isinstance(steps, int) or steps < 1:
+            raise InvalidValueError("steps", "a number from 1 on", steps)
+        self.model, self.steps = model, steps
+        self.meter = FapMeter(model, compiled=compiled)
+        self._solve: Callable[..., int] = solver.solve
+        self._look: Callable[..., None] = sight.look
+        look_at_all: Callable[..., None] = sight.look_at_all
+        new_sight: Callable[[HeadModel, Features], Any] = sight.PlainSight
+        if compiled and can_compile():
+            from agentface.mpeg4 import sight_compiled, solver_compiled
+
+            self._solve, self._look = solver_compiled.solve, sight_compiled.look
+            look_at_all, new_sight = sight_compiled.look_at_all, sight_compiled.new_sight
+
+        def looks(features: Features) -> Looks:
+            eye = new_sight(model, features)
+
+            def look(poses: Floats) -> Doubles:
+                out = np.empty((len(poses), len(features.matrix)))
+                look_at_all(eye, np.ascontiguousarray(poses, np.float32), out)
+                return out
+
+            return look
+
+        self.fit = fap_fit(self.meter, looks)
+        self._features = features_of(self.meter, self.fit.ranges)
+        self._sight = new_sight(model, self._features)
+        self._given = GivenAngles(model)
+        count, free = len(self.meter.faps), len(self.fit.problem.free)
+        self._usable = np.append(self.fit.usable, [True] * len(LIDS))
+        self._tikhonov = _ZERO * np.eye(free)
+        self._serves = self.fit.problem.pattern[:count] > 0.0
+        self._shut_rows = [np.isin(self.meter.columns, np.array(pair) - 1) for pair in LIDS]
+
+    def solve(
+        self,
+        faps: npt.ArrayLike,
+        mask: npt.ArrayLike | None = None,
+        previous: FapSolution | FacePose | None = None,
+    ) -> FapSolution:
+        """The pose that shows ``faps (68,)`` best, of those that ``mask (68,)`` names; all without one.
+
+        ``previous`` is the frame before, from which the search begins and which the pose stays near; what the FAPs do
+        not determine stays as it is there. FAPs 1 and 2 are not looked at.
+
+        Raises InvalidValueError for another shape and for what is not finite.
+        """
+        asked, named = _checked(faps, mask)
+        values, features = self._start(previous)
+        angles = self._given.apply(asked, named, values)
+        if features is None:
+            features = np.empty(len(self._features.matrix))
+            self._look(self._sight, values, features)
+        elif angles.any():
+            features += self.fit.gaze @ angles
+        goal, weight, clamped = self._wish(asked, named)
+        whole = bool((weight[self._usable] > 0.0).all())
+        held = ~(self._serves[weight[: len(self._serves)] > 0.0].any(axis=0))
+        prior = self._tikhonov if whole else self.fit.natural
+        wish = Wish(goal, weight, held, prior, _BACK, self.steps)
+        looks = int(self._solve(self._sight, self.fit.problem, wish, values, features))
+        return self._told(asked, named, values, features, clamped, held, looks)
+
+    def _start(self, previous: FapSolution | FacePose | None) -> tuple[Floats, Doubles | None]:
+        if isinstance(previous, FapSolution):
+            return previous.pose.array.copy(), previous.features.copy()
+        if previous is None:
+            return NEUTRAL.copy(), np.zeros(len(self._features.matrix))
+        return previous.array.copy(), None
+
+    def _wish(self, asked: Doubles, named: Mask) -> tuple[Doubles, Doubles, Mask]:
+        fit, columns = self.fit, self.meter.columns
+        target = asked[columns]
+        near = _within(target, fit.low, fit.high, _SOFT * fit.ranges)
+        used = named[columns] & fit.usable
+        shut = [target[rows].sum() / CLOSED for rows in self._shut_rows]
+        shut_used = [bool(used[rows].all()) for rows in self._shut_rows]
+        goal = np.append(self._features.matrix[: len(columns)].diagonal() * near, np.minimum(shut, 1.0))
+        weight = np.append(used.astype(np.float64), _SHUT * np.array(shut_used))
+        return goal, weight, (target < fit.low) | (target > fit.high)
+
+    def _told(
+        self, asked: Doubles, named: Mask, values: Floats, features: Doubles, clamped: Mask, held: Mask, looks: int
+    ) -> FapSolution:
+        fit, columns = self.fit, self.meter.columns
+        shown = np.zeros(FAP_COUNT, np.float32)
+        shown[columns] = np.where(fit.usable, features[: len(columns)] * fit.ranges, 0.0)
+        self._given.show(values, shown)
+        missed = np.where(named, shown - asked, 0.0).astype(np.float32)
+        beyond = np.zeros(FAP_COUNT, np.bool_)
+        beyond[columns] = clamped | ~fit.usable | (np.abs(missed[columns]) > _TOLD * fit.ranges)
+        known = np.zeros(FAP_COUNT, np.bool_)
+        known[columns] = True
+        beyond = np.where(known, beyond, np.abs(missed) > 1.0)
+        moves = np.zeros(COUNT, np.bool_)
+        moves[fit.problem.free] = ~held
+        moves |= self._given.moved(named)
+        numbers = np.flatnonzero(beyond & named & (np.abs(asked) > 0.0)) + 1
+        return FapSolution(FacePose(values), moves, shown, missed, tuple(numbers.tolist()), looks, features)
+
+
+def _checked(faps: npt.ArrayLike, mask: npt.ArrayLike | None) -> tuple[Doubles, Mask]:
+    asked = np.asarray(faps, np.float64)
+    named = np.ones(FAP_COUNT, np.bool_) if mask is None else np.array(mask, np.bool_)
+    for what, array in (("faps", asked), ("mask", named)):
+        if array.shape != (FAP_COUNT,):
+            raise InvalidValueError(what, f"{FAP_COUNT} values", array.shape)
+    named[:2] = False
+    if not np.isfinite(asked[named]).all():
+        number = int(np.flatnonzero(named & ~np.isfinite(asked))[0])
+        raise InvalidValueError(f"FAP {number + 1}", "a finite number", float(asked[number]))
+    return np.where(named, asked, 0.0), named
+
+
+def _within(target: Doubles, low: Doubles, high: Doubles, soft: Doubles) -> Doubles:
+    """Targets, bent where they leave ``low..high`` so that they end ``soft`` beyond it: smooth in value and slope."""
+    margin = np.maximum(soft, 1e-9)
+    above, below = np.maximum(target - high, 0.0), np.maximum(low - target, 0.0)
+    bent = np.clip(target, low, high)
+    bent += margin * (1.0 - np.exp(-above / margin)) - margin * (1.0 - np.exp(-below / margin))
+    return np.asarray(bent)

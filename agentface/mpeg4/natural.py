@@ -1,0 +1,39 @@
+"""Natural poses: two emotions mixed, a viseme, lids, gaze and head; what a solver's Jacobian and prior are made from."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from agentface.conventions import SIDES, Floats
+from agentface.emotion.inference import default_inference
+from agentface.emotion.state import EMOTIONS
+from agentface.mpeg4.visemes import VISEME_COUNT, visemes
+from agentface.parameters import COUNT, HIGH, LOW, indices_of
+
+_BLINKS = 0.3
+"""The share of poses whose lids are closing."""
+_TURNS = {"gaze_yaw": 0.2, "gaze_pitch": 0.1, "head_yaw": 0.2, "head_pitch": 0.1, "head_roll": 0.05}
+"""Standard deviations in radians."""
+
+
+def natural_poses(count: int, draw: np.random.Generator) -> Floats:
+    """``(count, COUNT)`` float32."""
+    inference, spoken = default_inference(), visemes()
+    lids = [indices_of(f"orbicularis_oculi_palpebralis_{side}")[0] for side in SIDES]
+    poses = np.zeros((count, COUNT), np.float32)
+    for pose in poses:
+        first, second = draw.choice(len(EMOTIONS), 2, replace=False)
+        state = {EMOTIONS[first]: draw.random(), EMOTIONS[second]: draw.random() ** 2}
+        pose[:] = inference.pose(state).array
+        said = np.float32(draw.random()) * spoken[draw.integers(VISEME_COUNT)].values
+        pose[:] = np.where(np.abs(said) > np.abs(pose), said, pose)
+        if draw.random() < _BLINKS:
+            pose[lids] = np.maximum(pose[lids], draw.random())
+        for name, width in _TURNS.items():
+            pose[indices_of(name)[0]] = width * draw.normal()
+    return np.clip(poses, LOW, HIGH)
+
+
+def uniform_poses(count: int, draw: np.random.Generator) -> Floats:
+    """``(count, COUNT)`` float32: every parameter anywhere in its range."""
+    return (LOW + (HIGH - LOW) * draw.random((count, COUNT))).astype(np.float32)

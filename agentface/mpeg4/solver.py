@@ -1,0 +1,156 @@
+"""The pose that shows given features of a face: bounded least squares in a few steps, for any linear features.
+
+Gauss and Newton's steps on one constant Jacobian J, the mean over natural poses, which Broyden's update (in Schubert's
+form, inside a fixed pattern) bends towards the truth as the steps go. Each step minimises
+
+    |W (J (x - x0) + f(x0) - goal)|^2 + x' P x + pull |x - back|^2 + damp |x - x0|^2
+
+over a box, with P a prior's precision, ``back`` the pose before, and W the weights, 0 for what is not asked for. A
+step that makes it worse is not taken; the next one is shorter.
+Broyden (1965), Math. Comp. 19; Schubert (1970), Math. Comp. 24: an update that keeps zeros zero.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from agentface.conventions import Doubles, Floats, Indices
+from agentface.mpeg4.sight import PlainSight, look
+
+SWEEPS, SMALL = 60, 1e-4
+"""Rounds over the box at most, and the change in parameters from which on a further one is worth it."""
+_DAMP, _EASE, _FIRM = 0.03, 0.3, 4.0
+"""The least damping after a step that made it worse, and its factors after a good and a bad step."""
+_FLAT, _STILL = 2e-3, 2e-3
+"""A gain, as part of what is left, and a step, from which on a further step is not worth it."""
+_SHORT = 1e-8  # a squared step that tells nothing of the Jacobian
+_SHARE = 1e-3  # of a squared step, the least part that a row's update is divided by
+
+
+class Problem(NamedTuple):
+    """What is the same for every frame: N features, F parameters that may move.
+
+    Attributes:
+        free: ``(F,)`` int32, their places in a pose.
+        low, high: ``(F,)`` float64, their ranges.
+        jacobian: ``(N, F)`` float64, features a parameter; 0 outside the pattern.
+        pattern: ``(N, F)`` float64, 1 where a parameter serves a feature, else 0.
+    """
+
+    free: Indices
+    low: Doubles
+    high: Doubles
+    jacobian: Doubles
+    pattern: Doubles
+
+
+class Wish(NamedTuple):
+    """What is wanted of one frame.
+
+    Attributes:
+        goal: ``(N,)`` float64, the features.
+        weight: ``(N,)`` float64, 0 for those that nobody asks for.
+        held: ``(F,)`` bool, parameters that stay as they are.
+        prior: ``(F, F)`` float64, P.
+        pull: how strongly the pose before holds.
+        steps: at most, 1 or more.
+    """
+
+    goal: Doubles
+    weight: Doubles
+    held: np.ndarray[tuple[int], np.dtype[np.bool_]]
+    prior: Doubles
+    pull: float
+    steps: int
+
+
+def solve(sight: PlainSight, problem: Problem, wish: Wish, values: Floats, features: Doubles) -> int:
+    """Move ``values (COUNT,)``, the start and the pose before, to the pose that shows the wish best.
+
+    ``features (N,)`` are those of the start, as far as they are known, and become those of the result. Returns how
+    often it looked.
+    """
+    count, weight = len(problem.free), wish.weight
+    x = np.empty(count)
+    for i in range(count):
+        x[i] = values[problem.free[i]]
+    back, low, high = x.copy(), problem.low.copy(), problem.high.copy()
+    for i in range(count):
+        if wish.held[i]:
+            low[i], high[i] = x[i], x[i]
+    seen, trial = np.empty(len(weight)), values.copy()
+    jacobian = problem.jacobian.copy()
+    cost, damp, looks = np.inf, 0.0, 0
+    for _ in range(wish.steps):
+        new = x.copy()
+        _step(jacobian, wish, features, x, back, damp, low, high, new)
+        step = new - x
+        for i in range(count):
+            trial[problem.free[i]] = new[i]
+        look(sight, trial, seen)
+        looks += 1
+        _learn(jacobian, problem.pattern, step, seen - features)
+        miss, way = weight * (seen - wish.goal), new - back
+        now = miss @ miss + new @ (wish.prior @ new) + wish.pull * (way @ way)
+        if now < cost:
+            gain, cost, damp = cost - now, now, _EASE * damp
+            x[:], features[:] = new, seen
+            values[:] = trial
+            if gain < _FLAT * now or np.abs(step).max() < _STILL:
+                break
+        else:
+            damp = max(_FIRM * damp, _DAMP)
+    return looks
+
+
+def _step(
+    jacobian: Doubles, wish: Wish, features: Doubles, x: Doubles, back: Doubles, damp: float,
+    low: Doubles, high: Doubles, new: Doubles,
+) -> None:  # fmt: skip
+    """Write the minimum of the frame's quadratic, in the box from ``low`` to ``high``, into ``new``: the start, too."""
+    weight = wish.weight
+    rows = jacobian * weight.reshape(-1, 1)
+    a = rows.T @ rows
+    b = (weight * (wish.goal - features)) @ rows + a @ x + wish.pull * back + damp * x
+    a += wish.prior
+    for i in range(len(x)):
+        a[i, i] += wish.pull + damp
+    box_minimum(a, b, low, high, new)
+
+
+def _learn(jacobian: Doubles, pattern: Doubles, step: Doubles, change: Doubles) -> None:
+    """Bend the Jacobian so that ``step`` makes ``change``, inside the pattern: Schubert's form of Broyden's update."""
+    whole = step @ step
+    if whole <= _SHORT:
+        return
+    for row in range(len(change)):
+        square, made = _SHARE * whole, 0.0
+        inside = 0.0
+        for i in range(len(step)):
+            inside += pattern[row, i] * step[i] * step[i]
+            made += jacobian[row, i] * step[i]
+        share = (change[row] - made) / max(square, inside)
+        for i in range(len(step)):
+            jacobian[row, i] += share * pattern[row, i] * step[i]
+
+
+def box_minimum(a: Doubles, b: Doubles, low: Doubles, high: Doubles, x: Doubles) -> int:
+    """Move ``x (F,)`` to the minimum of 1/2 x' a x - b' x in a box, by cyclic coordinate descent; returns the sweeps.
+
+    ``a (F, F)`` is symmetric and positive definite. A sweep ends it that moves no coordinate by :data:`SMALL`.
+    """
+    slope = a @ x - b
+    for sweep in range(SWEEPS):
+        largest = 0.0
+        for i in range(len(b)):
+            to = min(max(x[i] - slope[i] / a[i, i], low[i]), high[i])
+            way = to - x[i]
+            if way != 0.0:
+                x[i] = to
+                slope += way * a[i]
+                largest = max(largest, abs(way))
+        if largest < SMALL:
+            return sweep + 1
+    return SWEEPS
