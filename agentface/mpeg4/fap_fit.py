@@ -9,14 +9,14 @@ import numpy as np
 import numpy.typing as npt
 
 from agentface.cache import stamp_of
-from agentface.conventions import SIDES, Doubles, Floats, Indices
+from agentface.conventions import Doubles, Floats, Indices
 from agentface.head.model import HeadModel
 from agentface.mpeg4.meter import FapMeter
 from agentface.mpeg4.natural import natural_poses, uniform_poses
 from agentface.mpeg4.readings import Kind
 from agentface.mpeg4.sight import Features
 from agentface.mpeg4.solver import Problem
-from agentface.parameters import COUNT, HIGH, LOW, PARAMETERS, indices_of
+from agentface.parameters import COUNT, HIGH, LOW, NEUTRAL, PARAMETERS, indices_of
 from agentface.resources import rules_file
 
 Looks = Callable[[Floats], Doubles]
@@ -31,8 +31,8 @@ _COUPLED = ("orbicularis_oculi_palpebralis", "orbicularis_oculi_orbitalis")
 """Muscles that do something else on one side than on both: closing one eye squeezes it."""
 _NO_RANGE = 10.0
 """Units: a FAP that moves less than this has no range; what is measured of it is noise."""
-_UNIFORM, _NATURAL, _LEARNED, _MEAN = 500, 200, 400, 40
-"""Poses: for the ranges, for the reach besides, for the prior, for the Jacobian."""
+_UNIFORM, _STARTS, _LEARNED, _MEAN = 500, 200, 400, 40
+"""Poses: for the ranges, to begin with, for the prior, for the Jacobian."""
 _STEP, _PATTERN = 0.1, 0.03
 """Of a parameter's range, the step of differences; of a parameter's largest effect, what it is not for."""
 _LOOSE, _PRIOR = 0.02, 1e-5
@@ -49,6 +49,8 @@ class FapFit(NamedTuple):
         problem: for the solver, in features of :func:`features_of`.
         gaze: ``(N + 2, 3)``, how the features change with the parameters of gaze.
         natural: ``(F, F)``, the precision of natural poses about the face at rest.
+        starts: ``(S, COUNT)`` float32, natural poses that look straight ahead, the first at rest.
+        shown: ``(S, N + 2)``, their features.
     """
 
     ranges: Doubles
@@ -58,6 +60,8 @@ class FapFit(NamedTuple):
     problem: Problem
     gaze: Doubles
     natural: Doubles
+    starts: Floats
+    shown: Doubles
 
 
 def features_of(meter: FapMeter, ranges: Doubles | None = None) -> Features:
@@ -84,11 +88,12 @@ def _fit(meter: FapMeter, looks: Callable[[Features], Looks]) -> FapFit:
     count = len(meter.faps)
     units = looks(features_of(meter))
     uniform = units(uniform_poses(_UNIFORM, np.random.default_rng(0)))[:, :count]
-    others = units(np.vstack([natural_poses(_NATURAL, np.random.default_rng(1)), _single_poses()]))[:, :count]
-    ranges = np.ptp(uniform, axis=0)
-    shown = np.vstack([uniform, others])
+    starts = _starts()
+    extremes = units(np.vstack([starts, _single_poses()]))[:, :count]
+    ranges, extremes = np.ptp(uniform, axis=0), np.vstack([uniform, extremes])
     free = np.array([known.index for known in PARAMETERS if known.kind not in _GIVEN], np.int32)
-    jacobian = _mean_jacobian(meter, looks(features_of(meter, ranges)), free)
+    look = looks(features_of(meter, ranges))
+    jacobian = _mean_jacobian(meter, look, free)
     largest = np.abs(jacobian[:count, free]).max(axis=0, initial=1e-9)
     pattern = np.abs(jacobian[:count, free]) > _PATTERN * largest
     shut = [pattern[np.isin(meter.columns, np.array(pair) - 1)].any(axis=0) for pair in LIDS]
@@ -98,13 +103,22 @@ def _fit(meter: FapMeter, looks: Callable[[Features], Looks]) -> FapFit:
     )
     return FapFit(
         ranges=ranges,
-        low=shown.min(axis=0),
-        high=shown.max(axis=0),
+        low=extremes.min(axis=0),
+        high=extremes.max(axis=0),
         usable=ranges > _NO_RANGE,
         problem=problem,
         gaze=np.ascontiguousarray(jacobian[:, GAZE]),
         natural=_precision(free),
+        starts=starts,
+        shown=look(starts),
     )
+
+
+def _starts() -> Floats:
+    poses = natural_poses(_STARTS, np.random.default_rng(1))
+    poses[:, [known.index for known in PARAMETERS if known.kind in _GIVEN]] = 0.0
+    poses[0] = NEUTRAL
+    return poses
 
 
 def _single_poses() -> Floats:
@@ -149,7 +163,8 @@ def _sides(meter: FapMeter) -> list[npt.NDArray[np.bool_]]:
     readings = meter.readings
     aside = np.where(readings.kind == Kind.BONE, 0.0, meter.model.vertices[readings.vertex, 0])
     middle = 0.002  # m
-    return [np.append(sign * aside > middle, [side == SIDES[0], side == SIDES[1]]) for side, sign in zip(SIDES, (1, -1), strict=True)]
+    left, right = np.append(aside > middle, [True, False]), np.append(aside < -middle, [False, True])
+    return [left, right]
 
 
 def _precision(free: Indices) -> Doubles:

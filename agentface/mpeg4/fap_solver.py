@@ -20,7 +20,7 @@ from agentface.mpeg4.gaze import GivenAngles
 from agentface.mpeg4.meter import FapMeter
 from agentface.mpeg4.sight import Features
 from agentface.mpeg4.solver import Wish
-from agentface.parameters import COUNT, NEUTRAL, FacePose
+from agentface.parameters import COUNT, FacePose
 
 Mask = npt.NDArray[np.bool_]
 _SOFT = 0.05
@@ -117,27 +117,30 @@ class FapSolver:
         Raises InvalidValueError for another shape and for what is not finite.
         """
         asked, named = _checked(faps, mask)
-        values, features = self._start(previous)
+        goal, weight, clamped = self._wish(asked, named)
+        whole = bool((weight[self._usable] > 0.0).all())
+        values, features = self._start(goal if whole else None, previous)
         angles = self._given.apply(asked, named, values)
         if features is None:
             features = np.empty(len(self._features.matrix))
             self._look(self._sight, values, features)
         elif angles.any():
             features += self.fit.gaze @ angles
-        goal, weight, clamped = self._wish(asked, named)
-        whole = bool((weight[self._usable] > 0.0).all())
         held = ~(self._serves[weight[: len(self._serves)] > 0.0].any(axis=0))
         prior = self._tikhonov if whole else self.fit.natural
         wish = Wish(goal, weight, held, prior, _BACK, self.steps)
         looks = int(self._solve(self._sight, self.fit.problem, wish, values, features))
         return self._told(asked, named, values, features, clamped, held, looks)
 
-    def _start(self, previous: FapSolution | FacePose | None) -> tuple[Floats, Doubles | None]:
+    def _start(self, goal: Doubles | None, previous: FapSolution | FacePose | None) -> tuple[Floats, Doubles | None]:
+        """The frame before, or else the natural pose nearest to a whole goal; its features where they are known."""
         if isinstance(previous, FapSolution):
             return previous.pose.array.copy(), previous.features.copy()
-        if previous is None:
-            return NEUTRAL.copy(), np.zeros(len(self._features.matrix))
-        return previous.array.copy(), None
+        if previous is not None:
+            return previous.array.copy(), None
+        away = np.zeros(1) if goal is None else ((self.fit.shown - goal) ** 2).sum(axis=1)
+        nearest = int(away.argmin())
+        return self.fit.starts[nearest].copy(), self.fit.shown[nearest].copy()
 
     def _wish(self, asked: Doubles, named: Mask) -> tuple[Doubles, Doubles, Mask]:
         fit, columns = self.fit, self.meter.columns
