@@ -19,8 +19,8 @@ import numpy as np
 from agentface.conventions import Doubles, Floats, Indices
 from agentface.mpeg4.sight import PlainSight, look
 
-SWEEPS, SMALL = 60, 1e-4
-"""Rounds over the box at most, and the change in parameters from which on a further one is worth it."""
+ROUNDS, SWEEPS, SMALL = 4, 3, 1e-4
+"""Rounds of the minimum in a box at most, sweeps a round, and the change from which on a further sweep is worth it."""
 _DAMP, _EASE, _FIRM = 0.03, 0.3, 4.0
 """The least damping after a step that made it worse, and its factors after a good and a bad step."""
 _FLAT, _STILL = 2e-3, 2e-3
@@ -137,20 +137,44 @@ def _learn(jacobian: Doubles, pattern: Doubles, step: Doubles, change: Doubles) 
 
 
 def box_minimum(a: Doubles, b: Doubles, low: Doubles, high: Doubles, x: Doubles) -> int:
-    """Move ``x (F,)`` to the minimum of 1/2 x' a x - b' x in a box, by cyclic coordinate descent; returns the sweeps.
+    """Move ``x (F,)`` to the minimum of 1/2 x' a x - b' x in a box; returns the rounds that it took.
 
-    ``a (F, F)`` is symmetric and positive definite. A sweep ends it that moves no coordinate by :data:`SMALL`.
+    ``a (F, F)`` is symmetric and positive definite, and ``x`` lies in the box. A round is some sweeps of cyclic
+    coordinate descent, which find what the box holds, and a whole step of all that it does not hold, cut to the box.
+    Both only descend. A sweep ends it that moves no coordinate by :data:`SMALL`.
     """
     slope = a @ x - b
-    for sweep in range(SWEEPS):
-        largest = 0.0
-        for i in range(len(b)):
-            to = min(max(x[i] - slope[i] / a[i, i], low[i]), high[i])
-            way = to - x[i]
-            if way != 0.0:
-                x[i] = to
-                slope += way * a[i]
-                largest = max(largest, abs(way))
-        if largest < SMALL:
-            return sweep + 1
-    return SWEEPS
+    for turn in range(ROUNDS):
+        for _ in range(SWEEPS):
+            largest = 0.0
+            for i in range(len(b)):
+                to = min(max(x[i] - slope[i] / a[i, i], low[i]), high[i])
+                way = to - x[i]
+                if way != 0.0:
+                    x[i] = to
+                    slope += way * a[i]
+                    largest = max(largest, abs(way))
+            if largest < SMALL:
+                return turn + 1
+        _go_on(a, low, high, x, slope)
+    return ROUNDS
+
+
+def _go_on(a: Doubles, low: Doubles, high: Doubles, x: Doubles, slope: Doubles) -> None:
+    """Step to the minimum over the coordinates that lie inside the box, back to its sides, if that descends."""
+    inside = np.flatnonzero((x > low) & (x < high))
+    count = len(inside)
+    part, right = np.empty((count, count)), np.empty((count, 1))
+    for i in range(count):
+        right[i, 0] = -slope[inside[i]]
+        for j in range(count):
+            part[i, j] = a[inside[i], inside[j]]
+    way = np.linalg.solve(part, right)
+    step, curve = np.zeros(len(x)), np.zeros(len(x))
+    for i in range(count):
+        k = inside[i]
+        step[k] = min(max(x[k] + way[i, 0], low[k]), high[k]) - x[k]
+        curve += step[k] * a[k]
+    if step @ slope + 0.5 * (step @ curve) < 0.0:
+        x += step
+        slope += curve
