@@ -22,7 +22,7 @@ LAYERS = (
     ("mesh",),
     ("head",),
     ("emotion", "deform", "facs"),
-    ("tissue",),
+    ("tissue", "mpeg4"),
     ("motion",),
     ("requests",),
     ("view",),

@@ -114,12 +114,16 @@ def _rule_readers() -> dict[str, _Loader]:
     from agentface.emotion.vocabularies import load_vocabularies
     from agentface.facs.action_units import load_action_units
     from agentface.motion.conflicts import load_conflicts
+    from agentface.mpeg4.fap_table import load_faps
+    from agentface.mpeg4.visemes import load_visemes
 
     return {
         "emotions.yaml": load_emotions,
         "blends.yaml": load_blends,
         "action_units.yaml": load_action_units,
         "conflicts.yaml": load_conflicts,
+        "faps.yaml": load_faps,
+        "visemes.yaml": load_visemes,
         "vocabularies.yaml": load_vocabularies,
     }
 

@@ -60,7 +60,7 @@ deform = compiled_twin(order.deform, globals(), error_model="numpy")
 
 @kernel(error_model="numpy")
 def shape(tables: FaceTables, scratch: Scratch, last: int, values: Floats) -> None:
-    """Move ``scratch.points`` to the pose ``values (COUNT,)``: by the vector muscles, then by the stages to ``last``."""
+    """Move ``scratch.points`` to the pose ``values (COUNT,)``: the vector muscles, then the stages up to ``last``."""
     scratch.levels[:] = values[_FIRST_MUSCLE : _FIRST_MUSCLE + scratch.levels.shape[0]]
     combine.slice_steps(scratch.levels, STEP, scratch.parts)
     combine.contract(tables.skin.rest, tables.blocks, scratch.parts, scratch.points)

@@ -41,12 +41,12 @@ def check_points(document: Document, rows: Mapping[str, FeaturePointRow], vertex
         document.fault(("feature_points", number), "a feature point of MPEG-4", number, "2.1 to 11.6")
     missing = [number for number in FEATURE_POINTS if number not in rows]
     if missing:
-        document.fault(("feature_points",), "all 84 points", f"none of {', '.join(missing)}", "agentface build has them")
+        document.fault(
+            ("feature_points",), "all 84 points", f"none of {', '.join(missing)}", "agentface build has them"
+        )
     for number, row in rows.items():
         if row.mesh == "skin" and row.vertex is not None and row.vertex >= vertex_count:
-            document.fault(
-                ("feature_points", number, "vertex"), f"a vertex in 0..{vertex_count - 1}", str(row.vertex)
-            )
+            document.fault(("feature_points", number, "vertex"), f"a vertex in 0..{vertex_count - 1}", str(row.vertex))
 
 
 def check_parts(path: Path, rows: Mapping[str, FeaturePointRow], counts: Mapping[str, int]) -> None:

@@ -10,7 +10,6 @@ import numpy.typing as npt
 
 from agentface.cache import stamp_of
 from agentface.conventions import Doubles, Floats, Indices
-from agentface.head.model import HeadModel
 from agentface.mpeg4.meter import FapMeter
 from agentface.mpeg4.natural import natural_poses, uniform_poses
 from agentface.mpeg4.readings import Kind

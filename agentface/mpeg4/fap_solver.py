@@ -14,7 +14,7 @@ from agentface.errors import InvalidValueError
 from agentface.head.model import HeadModel
 from agentface.kernel import can_compile
 from agentface.mpeg4 import sight, solver
-from agentface.mpeg4.fap_fit import CLOSED, GAZE, LIDS, Looks, fap_fit, features_of
+from agentface.mpeg4.fap_fit import CLOSED, LIDS, Looks, fap_fit, features_of
 from agentface.mpeg4.faps import FAP_COUNT
 from agentface.mpeg4.gaze import GivenAngles
 from agentface.mpeg4.meter import FapMeter
@@ -40,7 +40,7 @@ class FapSolution:
     Attributes:
         pose: what shows them.
         moves: ``(COUNT,)`` bool, the parameters that the FAPs given determine; the others are as they were before.
-        shown: ``(68,)`` float32, what the pose shows of the FAPs that are read off points; FAPs of eyes and head as set.
+        shown: ``(68,)`` float32, what the pose shows on the geometric face.
         missed: ``(68,)`` float32, shown less asked, of those given; 0 for the others.
         out_of_reach: the numbers of those that the face cannot show so far: beyond its reach, without a range, or
             missed by more than a twentieth of their range.
@@ -126,11 +126,23 @@ class FapSolver:
             self._look(self._sight, values, features)
         elif angles.any():
             features += self.fit.gaze @ angles
-        held = ~(self._serves[weight[: len(self._serves)] > 0.0].any(axis=0))
+        held: Mask = np.logical_not(self._serves[weight[: len(self._serves)] > 0.0].any(axis=0))
         prior = self._tikhonov if whole else self.fit.natural
         wish = Wish(goal, weight, held, prior, _BACK, self.steps)
         looks = int(self._solve(self._sight, self.fit.problem, wish, values, features))
         return self._told(asked, named, values, features, clamped, held, looks)
+
+    def measured(self, values: Floats) -> Doubles:
+        """``(68,)`` units: what a pose, ``values (COUNT,)``, shows on the geometric face."""
+        features = np.empty(len(self._features.matrix))
+        self._look(self._sight, np.ascontiguousarray(values, np.float32), features)
+        return self._shown(values, features).astype(np.float64)
+
+    def _shown(self, values: Floats, features: Doubles) -> Floats:
+        count, faps = len(self.meter.columns), np.zeros(FAP_COUNT, np.float32)
+        faps[self.meter.columns] = np.where(self.fit.usable, features[:count] * self.fit.ranges, 0.0)
+        self._given.show(values, faps)
+        return faps
 
     def _start(self, goal: Doubles | None, previous: FapSolution | FacePose | None) -> tuple[Floats, Doubles | None]:
         """The frame before, or else the natural pose nearest to a whole goal; its features where they are known."""
@@ -157,9 +169,7 @@ class FapSolver:
         self, asked: Doubles, named: Mask, values: Floats, features: Doubles, clamped: Mask, held: Mask, looks: int
     ) -> FapSolution:
         fit, columns = self.fit, self.meter.columns
-        shown = np.zeros(FAP_COUNT, np.float32)
-        shown[columns] = np.where(fit.usable, features[: len(columns)] * fit.ranges, 0.0)
-        self._given.show(values, shown)
+        shown = self._shown(values, features)
         missed = np.where(named, shown - asked, 0.0).astype(np.float32)
         beyond = np.zeros(FAP_COUNT, np.bool_)
         beyond[columns] = clamped | ~fit.usable | (np.abs(missed[columns]) > _TOLD * fit.ranges)

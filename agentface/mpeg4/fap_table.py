@@ -115,7 +115,9 @@ def _check_row(document: Document, number: int, row: FapRow) -> None:
     for key in ("intra", "predicted"):
         low, high = getattr(row, key)
         if not (low < high and low <= 0 <= high):
-            document.fault(("faps", number, key), "the least and the largest value, with 0 in between", f"{low}, {high}")
+            document.fault(
+                ("faps", number, key), "the least and the largest value, with 0 in between", f"{low}, {high}"
+            )
     if row.bidirectional != (row.intra[0] < 0):
         expected = "a negative value" if row.bidirectional else "0"
         document.fault(("faps", number, "intra", 0), f"{expected}, as bidirectional says", str(row.intra[0]))

@@ -98,8 +98,8 @@ def _readings(model: HeadModel, faps: tuple[Fap, ...]) -> Readings:
             kind = Kind.IN_JAW if fap.number == CHIN else Kind.SKIN
             rows.append((kind, point.vertex, axis, scale, float(point.position[axis])))
     kinds, vertices, axes, scales, rests = zip(*rows, strict=True)
-    whole = (np.array(column, np.int32) for column in (kinds, vertices, axes))
-    return Readings(*whole, np.array(scales, np.float64), np.array(rests, np.float64), bone)
+    of_kind, vertex, axis_of = (np.array(column, np.int32) for column in (kinds, vertices, axes))
+    return Readings(of_kind, vertex, axis_of, np.array(scales, np.float64), np.array(rests, np.float64), bone)
 
 
 def _read_faces(readings: Readings, faces: FaceArrays, out: Doubles) -> None:

@@ -1,4 +1,4 @@
-"""Natural poses: two emotions mixed, a viseme, lids, gaze and head; what a solver's Jacobian and prior are made from."""
+"""Natural poses, of which a solver learns: two emotions mixed, a viseme, lids, gaze and head."""
 
 from __future__ import annotations
 

@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from agentface.conventions import Doubles, Floats, Indices
+from agentface.conventions import Doubles, Indices
 from agentface.deform.geometry import FaceArrays
 
 

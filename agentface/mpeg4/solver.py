@@ -15,18 +15,19 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
+import numpy.typing as npt
 
 from agentface.conventions import Doubles, Floats, Indices
 from agentface.mpeg4.sight import PlainSight, look
 
 ROUNDS, SWEEPS, SMALL = 4, 3, 1e-4
 """Rounds of the minimum in a box at most, sweeps a round, and the change from which on a further sweep is worth it."""
-_DAMP, _EASE, _FIRM = 0.03, 0.3, 4.0
+DAMP, EASE, FIRM = 0.03, 0.3, 4.0
 """The least damping after a step that made it worse, and its factors after a good and a bad step."""
-_FLAT, _STILL = 2e-3, 2e-3
+FLAT, STILL = 2e-3, 2e-3
 """A gain, as part of what is left, and a step, from which on a further step is not worth it."""
-_SHORT = 1e-8  # a squared step that tells nothing of the Jacobian
-_SHARE = 1e-3  # of a squared step, the least part that a row's update is divided by
+SHORT = 1e-8  # a squared step that tells nothing of the Jacobian
+SHARE = 1e-3  # of a squared step, the least part that a row's update is divided by
 
 
 class Problem(NamedTuple):
@@ -60,7 +61,7 @@ class Wish(NamedTuple):
 
     goal: Doubles
     weight: Doubles
-    held: np.ndarray[tuple[int], np.dtype[np.bool_]]
+    held: npt.NDArray[np.bool_]
     prior: Doubles
     pull: float
     steps: int
@@ -85,27 +86,27 @@ def solve(sight: PlainSight, problem: Problem, wish: Wish, values: Floats, featu
     cost, damp, looks = np.inf, 0.0, 0
     for _ in range(wish.steps):
         new = x.copy()
-        _step(jacobian, wish, features, x, back, damp, low, high, new)
+        next_step(jacobian, wish, features, x, back, damp, low, high, new)
         step = new - x
         for i in range(count):
             trial[problem.free[i]] = new[i]
         look(sight, trial, seen)
         looks += 1
-        _learn(jacobian, problem.pattern, step, seen - features)
+        learn(jacobian, problem.pattern, step, seen - features)
         miss, way = weight * (seen - wish.goal), new - back
-        now = miss @ miss + new @ (wish.prior @ new) + wish.pull * (way @ way)
+        now = float(miss @ miss + new @ (wish.prior @ new) + wish.pull * (way @ way))
         if now < cost:
-            gain, cost, damp = cost - now, now, _EASE * damp
+            gain, cost, damp = cost - now, now, EASE * damp
             x[:], features[:] = new, seen
             values[:] = trial
-            if gain < _FLAT * now or np.abs(step).max() < _STILL:
+            if gain < FLAT * now or np.abs(step).max() < STILL:
                 break
         else:
-            damp = max(_FIRM * damp, _DAMP)
+            damp = max(FIRM * damp, DAMP)
     return looks
 
 
-def _step(
+def next_step(
     jacobian: Doubles, wish: Wish, features: Doubles, x: Doubles, back: Doubles, damp: float,
     low: Doubles, high: Doubles, new: Doubles,
 ) -> None:  # fmt: skip
@@ -120,13 +121,13 @@ def _step(
     box_minimum(a, b, low, high, new)
 
 
-def _learn(jacobian: Doubles, pattern: Doubles, step: Doubles, change: Doubles) -> None:
+def learn(jacobian: Doubles, pattern: Doubles, step: Doubles, change: Doubles) -> None:
     """Bend the Jacobian so that ``step`` makes ``change``, inside the pattern: Schubert's form of Broyden's update."""
     whole = step @ step
-    if whole <= _SHORT:
+    if whole <= SHORT:
         return
     for row in range(len(change)):
-        square, made = _SHARE * whole, 0.0
+        square, made = SHARE * whole, 0.0
         inside = 0.0
         for i in range(len(step)):
             inside += pattern[row, i] * step[i] * step[i]
@@ -149,18 +150,18 @@ def box_minimum(a: Doubles, b: Doubles, low: Doubles, high: Doubles, x: Doubles)
             largest = 0.0
             for i in range(len(b)):
                 to = min(max(x[i] - slope[i] / a[i, i], low[i]), high[i])
-                way = to - x[i]
-                if way != 0.0:
+                by = to - x[i]
+                if by != 0.0:
                     x[i] = to
-                    slope += way * a[i]
-                    largest = max(largest, abs(way))
+                    slope += by * a[i]
+                    largest = max(largest, abs(by))
             if largest < SMALL:
                 return turn + 1
-        _go_on(a, low, high, x, slope)
+        whole_step(a, low, high, x, slope)
     return ROUNDS
 
 
-def _go_on(a: Doubles, low: Doubles, high: Doubles, x: Doubles, slope: Doubles) -> None:
+def whole_step(a: Doubles, low: Doubles, high: Doubles, x: Doubles, slope: Doubles) -> None:
     """Step to the minimum over the coordinates that lie inside the box, back to its sides, if that descends."""
     inside = np.flatnonzero((x > low) & (x < high))
     count = len(inside)

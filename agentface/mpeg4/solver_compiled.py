@@ -8,20 +8,20 @@ from agentface.kernel import compiled_twin
 from agentface.mpeg4 import solver
 from agentface.mpeg4.sight_compiled import look  # noqa: F401
 from agentface.mpeg4.solver import (  # noqa: F401
-    _DAMP,
-    _EASE,
-    _FIRM,
-    _FLAT,
-    _SHARE,
-    _SHORT,
-    _STILL,
+    DAMP,
+    EASE,
+    FIRM,
+    FLAT,
     ROUNDS,
+    SHARE,
+    SHORT,
     SMALL,
+    STILL,
     SWEEPS,
 )
 
-_go_on = compiled_twin(solver._go_on, globals(), error_model="numpy")
+whole_step = compiled_twin(solver.whole_step, globals(), error_model="numpy")
 box_minimum = compiled_twin(solver.box_minimum, globals(), error_model="numpy", fastmath=True)
-_learn = compiled_twin(solver._learn, globals(), error_model="numpy", fastmath=True)
-_step = compiled_twin(solver._step, globals(), error_model="numpy")
+learn = compiled_twin(solver.learn, globals(), error_model="numpy", fastmath=True)
+next_step = compiled_twin(solver.next_step, globals(), error_model="numpy")
 solve = compiled_twin(solver.solve, globals(), error_model="numpy")

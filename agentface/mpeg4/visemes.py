@@ -12,7 +12,7 @@ from pydantic import Field
 
 from agentface.config import Document, Table
 from agentface.conventions import Floats
-from agentface.errors import did_you_mean
+from agentface.errors import InvalidValueError, did_you_mean
 from agentface.parameters import COUNT, PARAMETERS, indices_of, parameter_names
 from agentface.resources import rules_file
 
@@ -92,3 +92,25 @@ def _values(row: VisemeRow) -> Floats:
         values[list(indices_of(name))] = value
     values.flags.writeable = False
     return values
+
+
+def viseme_pose(first: int, second: int, blend: int, table: tuple[Viseme, ...] | None = None) -> Floats:
+    """FAP 1: ``(COUNT,)`` float32, the first viseme by ``blend`` of 63 and the second by the rest.
+
+    Raises InvalidValueError for numbers that are no visemes, and for a blend outside 0..63.
+    """
+    known = visemes() if table is None else table
+    for what, number, largest in (
+        ("viseme_select1", first, VISEME_COUNT - 1),
+        ("viseme_select2", second, VISEME_COUNT - 1),
+        ("viseme_blend", blend, BLEND_STEPS),
+    ):
+        check_step(what, number, largest)
+    share = np.float32(blend / BLEND_STEPS)
+    return np.asarray(share * known[first].values + (np.float32(1.0) - share) * known[second].values)
+
+
+def check_step(what: str, number: int, largest: int) -> None:
+    """Raise InvalidValueError for what is no whole number in ``0..largest``."""
+    if isinstance(number, bool) or number != int(number) or not 0 <= number <= largest:
+        raise InvalidValueError(what, f"a whole number in 0..{largest}", number)

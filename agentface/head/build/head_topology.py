@@ -40,6 +40,7 @@ _NEAREST = {
     "cheek_l": (0.42, 6.75, 1.30), "jaw_side_l": (0.35, 6.36, 1.25), "gonion_l": (0.58, 6.50, 0.85),
 }  # fmt: skip
 
+
 class HeadTopology:
     """What all faces of the base mesh share: triangles, vertex order, regions, rings, landmarks."""
 
