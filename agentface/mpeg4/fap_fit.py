@@ -10,6 +10,7 @@ import numpy.typing as npt
 
 from agentface.cache import stamp_of
 from agentface.conventions import Doubles, Floats, Indices
+from agentface.mpeg4.jacobian import Coupled, Looks, mean_jacobian
 from agentface.mpeg4.meter import FapMeter
 from agentface.mpeg4.natural import natural_poses, uniform_poses
 from agentface.mpeg4.readings import Kind
@@ -18,11 +19,10 @@ from agentface.mpeg4.solver import Problem
 from agentface.parameters import COUNT, HIGH, LOW, NEUTRAL, PARAMETERS, indices_of
 from agentface.resources import rules_file
 
-Looks = Callable[[Floats], Doubles]
-"""``(B, COUNT)`` poses to ``(B, N)`` features."""
 LIDS = ((19, 21), (20, 22))
 """Upper and lower lid: closed where they sum up to 1024, however the two share it."""
 CLOSED = 1024.0
+"""Units."""
 GAZE = indices_of("gaze_yaw") + indices_of("gaze_pitch") + indices_of("gaze_vergence")
 _GIVEN = {"gaze", "head"}
 """Kinds of parameters that FAPs give by themselves: nothing is solved for them."""
@@ -32,8 +32,8 @@ _NO_RANGE = 10.0
 """Units: a FAP that moves less than this has no range; what is measured of it is noise."""
 _UNIFORM, _STARTS, _LEARNED, _MEAN = 500, 200, 400, 40
 """Poses: for the ranges, to begin with, for the prior, for the Jacobian."""
-_STEP, _PATTERN = 0.1, 0.03
-"""Of a parameter's range, the step of differences; of a parameter's largest effect, what it is not for."""
+_PATTERN = 0.03
+"""Of a parameter's largest effect, what it is not for."""
 _LOOSE, _PRIOR = 0.02, 1e-5
 """Standard deviation that every parameter has besides, and the prior's weight."""
 
@@ -92,7 +92,9 @@ def _fit(meter: FapMeter, looks: Callable[[Features], Looks]) -> FapFit:
     ranges, extremes = np.ptp(uniform, axis=0), np.vstack([uniform, extremes])
     free = np.array([known.index for known in PARAMETERS if known.kind not in _GIVEN], np.int32)
     look = looks(features_of(meter, ranges))
-    jacobian = _mean_jacobian(meter, look, free)
+    moved = np.concatenate([free, np.array(GAZE, np.int32)])
+    coupled = [Coupled(indices_of(name), _sides(meter)) for name in _COUPLED]
+    jacobian = mean_jacobian(look, natural_poses(_MEAN, np.random.default_rng(7)), moved, coupled)
     largest = np.abs(jacobian[:count, free]).max(axis=0, initial=1e-9)
     pattern = np.abs(jacobian[:count, free]) > _PATTERN * largest
     shut = [pattern[np.isin(meter.columns, np.array(pair) - 1)].any(axis=0) for pair in LIDS]
@@ -132,38 +134,13 @@ def _single_poses() -> Floats:
     return np.array(poses)
 
 
-def _mean_jacobian(meter: FapMeter, look: Looks, free: Indices) -> Doubles:
-    """``(N + 2, COUNT)``: how features change with parameters, in the mean over natural poses."""
-    moved = np.concatenate([free, np.array(GAZE, np.int32)])
-    sides = _sides(meter)
-    total = np.zeros((len(meter.faps) + len(LIDS), COUNT))
-    for pose in natural_poses(_MEAN, np.random.default_rng(7)):
-        step = _STEP * (HIGH - LOW)
-        step = np.where(pose + step <= HIGH, step, -step)[moved]
-        poses = np.repeat(pose[None], len(moved) + 1, axis=0)
-        poses[np.arange(len(moved)) + 1, moved] += step
-        shown = look(poses)
-        jacobian = np.zeros_like(total)
-        jacobian[:, moved] = ((shown[1:] - shown[0]) / step[:, None]).T
-        for name in _COUPLED:  # both at once, and each side's own rows
-            both = list(indices_of(name))
-            way = np.float32(_STEP if (pose[both] + _STEP <= 1.0).all() else -_STEP)
-            pushed = pose.copy()
-            pushed[both] = np.clip(pushed[both] + way, 0.0, 1.0)
-            change = (look(np.stack([pushed]))[0] - shown[0]) / way
-            for column, rows in zip(both, sides, strict=True):
-                jacobian[:, column] = np.where(rows, change, 0.0)
-        total += jacobian / _MEAN
-    return total
-
-
-def _sides(meter: FapMeter) -> list[npt.NDArray[np.bool_]]:
+def _sides(meter: FapMeter) -> tuple[npt.NDArray[np.bool_], ...]:
     """``(N + 2,)`` for the left and the right: which features are read on that side."""
     readings = meter.readings
     aside = np.where(readings.kind == Kind.BONE, 0.0, meter.model.vertices[readings.vertex, 0])
     middle = 0.002  # m
     left, right = np.append(aside > middle, [True, False]), np.append(aside < -middle, [False, True])
-    return [left, right]
+    return left, right
 
 
 def _precision(free: Indices) -> Doubles:

@@ -14,9 +14,10 @@ from agentface.errors import InvalidValueError
 from agentface.head.model import HeadModel
 from agentface.kernel import can_compile
 from agentface.mpeg4 import sight, solver
-from agentface.mpeg4.fap_fit import CLOSED, LIDS, Looks, fap_fit, features_of
+from agentface.mpeg4.fap_fit import CLOSED, LIDS, fap_fit, features_of
 from agentface.mpeg4.faps import FAP_COUNT
 from agentface.mpeg4.gaze import GivenAngles
+from agentface.mpeg4.jacobian import Looks
 from agentface.mpeg4.meter import FapMeter
 from agentface.mpeg4.sight import Features
 from agentface.mpeg4.solver import Wish

@@ -118,7 +118,7 @@ def _check_row(document: Document, number: int, row: FapRow) -> None:
             document.fault(
                 ("faps", number, key), "the least and the largest value, with 0 in between", f"{low}, {high}"
             )
-    if row.bidirectional != (row.intra[0] < 0):
+    if row.bidirectional != (min(row.intra) < 0):
         expected = "a negative value" if row.bidirectional else "0"
         document.fault(("faps", number, "intra", 0), f"{expected}, as bidirectional says", str(row.intra[0]))
 

@@ -1,0 +1,154 @@
+"""What is read off a face: points that were moved by known amounts, bones, angles, wrinkles."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from agentface.deform.geometry import FaceGeometry
+from agentface.errors import InvalidValueError
+from agentface.mpeg4.faps import FAPS, LOW_LEVEL, fap
+from agentface.mpeg4.fapu import fapu
+from agentface.mpeg4.feature_points import feature_points
+from agentface.mpeg4.meter import CHIN, EYES, HEAD, JAW, FapMeter
+from agentface.parameters import HIGH, LOW, FacePose, parameter
+from agentface.resources import face_names
+from tests.heads import deformer_of, head_model
+from tests.mpeg4.solvers import some_poses
+
+DIRECTION = {
+    "left": (1, 0, 0), "right": (-1, 0, 0), "up": (0, 1, 0), "down": (0, -1, 0), "forward": (0, 0, 1),
+}  # fmt: skip
+ON_SKIN = [
+    each for each in LOW_LEVEL
+    if each.group not in (6, 7) and each.number not in (*JAW, CHIN, *range(23, 31))
+]  # fmt: skip
+
+
+def at_rest(face="amber"):
+    model = head_model(face)
+    return FaceGeometry.at_rest(model.vertices, model.normals, len(model.trains))
+
+
+@pytest.mark.parametrize("face", face_names())
+def test_a_face_at_rest_shows_nothing(face):
+    assert not FapMeter(head_model(face)).measure(at_rest(face)).any()
+    assert not FapMeter(head_model(face)).measure(deformer_of(face).at(FacePose())).any()
+
+
+@pytest.mark.parametrize("known", ON_SKIN, ids=lambda each: str(each.number))
+def test_a_point_moved_by_its_unit_shows_its_value(known):
+    model, geometry = head_model(), at_rest()
+    (number,) = known.points
+    vertex = feature_points(model)[number].vertex
+    way = 100 * fapu(model).of(known.unit) * np.array(DIRECTION[known.positive])
+    geometry.vertices[vertex] += way.astype(np.float32)
+    shown = FapMeter(model).measure(geometry)
+    assert shown[known.number - 1] == pytest.approx(100, abs=0.01)
+    others = {each.number for each in FAPS if each.points == known.points} - {known.number}
+    assert set(np.flatnonzero(np.abs(shown) > 0.01) + 1) <= {known.number}, others
+
+
+def test_wrinkles_move_no_point():
+    geometry = at_rest()
+    geometry.wrinkles[:] = 1e-3
+    geometry.vertices += geometry.wrinkles[:, None] * geometry.smooth_normals
+    assert np.abs(FapMeter(head_model()).measure(geometry)).max() < 0.01
+
+
+def test_the_jaw_is_read_off_its_bone():
+    model = head_model()
+    meter, points = FapMeter(model), feature_points(model)
+    shown = meter.measure(deformer_of().at(FacePose.of(jaw_open=0.5)))
+    angle = np.radians(0.5 * model.jaw.widest_deg)
+    up, ahead = points["2.1"].position[1:].astype(float) - model.jaw.pivot[1:]
+    down = up - (np.cos(angle) * up - np.sin(angle) * ahead)
+    assert shown[2] == pytest.approx(down / meter.units.MNS, rel=1e-4)
+    assert np.abs(shown[[13, 14]]).max() < 0.01
+    assert abs(shown[17]) < 0.03 * shown[2], "the chin goes with the bone"
+    slid = at_rest()
+    slid.jaw[:3, 3] = 0.002, 0.0, 0.003
+    shown = meter.measure(slid)
+    assert shown[13] == pytest.approx(0.003 / meter.units.MNS, rel=1e-4)
+    assert shown[14] == pytest.approx(-0.002 / meter.units.MW, rel=1e-4)
+
+
+@pytest.mark.parametrize(
+    ("name", "numbers", "sign"),
+    [
+        ("head_yaw", (49,), 1), ("head_pitch", (48,), -1), ("head_roll", (50,), -1),
+        ("gaze_yaw", (23, 24), 1), ("gaze_pitch", (25, 26), -1),
+    ],
+)  # fmt: skip
+def test_angles_come_back(name, numbers, sign):
+    value = 0.12
+    shown = FapMeter(head_model()).measure(deformer_of().at(FacePose.of(**{name: value})))
+    for number in (*EYES, *HEAD):
+        expected = sign * value * 1e5 if number in numbers else 0.0
+        assert shown[number - 1] == pytest.approx(expected, abs=1.0)
+
+
+def test_a_turned_head_moves_no_point_of_its_face():
+    pose = FacePose.of(head_yaw=0.8, head_pitch=-0.5, head_roll=0.3)
+    shown = FapMeter(head_model()).measure(deformer_of().at(pose))
+    assert set(np.flatnonzero(np.abs(shown) > 0.01) + 1) == set(HEAD)
+
+
+def test_eyes_that_converge_look_inward():
+    shown = FapMeter(head_model()).measure(deformer_of().at(FacePose.of(gaze_vergence=0.1)))
+    assert shown[22] == pytest.approx(-1e4, abs=1.0)
+    assert shown[23] == pytest.approx(1e4, abs=1.0)
+
+
+@pytest.mark.parametrize("face", face_names())
+def test_a_mirrored_face_shows_mirrored_faps(face):
+    meter = FapMeter(head_model(face))
+    poses = some_poses("uniform", 3, 5)
+    for values in poses:
+        pose = FacePose(values)
+        image = FacePose(_mirrored(values))
+        one, other = (meter.measure(deformer_of(face).at(each)) for each in (pose, image))
+        for known in LOW_LEVEL:
+            name = known.name.replace("_l_", "_?_").replace("_r_", "_l_").replace("_?_", "_r_")
+            name = name.replace("_lip_lm", "_lip_?m").replace("_lip_rm", "_lip_lm").replace("_lip_?m", "_lip_rm")
+            sign = -1 if known.name in ("shift_jaw", "bend_nose", "head_yaw", "head_roll") else 1
+            sign = -1 if "yaw" in known.name else sign
+            assert other[fap(name).number - 1] == pytest.approx(sign * one[known.number - 1], abs=0.5), known.name
+
+
+def _mirrored(values):
+    result = values.copy()
+    for index, value in enumerate(values):
+        known = parameter(_names()[index])
+        if known.partner:
+            result[parameter(known.partner).index] = value
+        elif known.name in ("gaze_yaw", "head_yaw", "head_roll", "jaw_shift", "mouth_shift", "nose_bend"):
+            result[index] = -value
+    return np.clip(result, LOW, HIGH)
+
+
+def _names():
+    from agentface.parameters import NAMES
+
+    return NAMES
+
+
+def test_many_faces_are_measured_as_each_alone_and_as_by_numpy():
+    model, poses = head_model(), some_poses("natural", 6, 2)
+    faces = [deformer_of().at(FacePose(values)) for values in poses]
+    batch = FaceGeometry(*(np.stack(arrays) for arrays in zip(*(face.arrays() for face in faces), strict=True)))
+    meter, plain = FapMeter(model), FapMeter(model, compiled=False)
+    shown = meter.measure(batch)
+    assert shown.shape == (6, 68)
+    assert shown.dtype == np.float32
+    np.testing.assert_array_equal(shown, np.stack([meter.measure(face) for face in faces]))
+    np.testing.assert_allclose(plain.measure(batch), shown, atol=1e-3)
+    square = FaceGeometry(*(array.reshape(2, 3, *array.shape[1:]) for array in batch.arrays()))
+    np.testing.assert_array_equal(meter.measure(square), shown.reshape(2, 3, 68))
+
+
+def test_another_mesh_is_refused():
+    geometry = at_rest()
+    geometry.vertices = geometry.vertices[:-1]
+    with pytest.raises(InvalidValueError, match="vertices of amber"):
+        FapMeter(head_model()).measure(geometry)
