@@ -13,6 +13,7 @@ from agentface.conventions import Doubles, Floats
 from agentface.errors import InvalidValueError
 from agentface.head.model import HeadModel
 from agentface.kernel import can_compile
+from agentface.mesh.smoothstep import smoothstep
 from agentface.mpeg4 import sight, solver
 from agentface.mpeg4.fap_fit import CLOSED, LIDS, fap_fit, features_of
 from agentface.mpeg4.faps import FAP_COUNT
@@ -26,10 +27,14 @@ from agentface.parameters import COUNT, FacePose
 Mask = npt.NDArray[np.bool_]
 _SOFT = 0.05
 """Of a FAP's range, how far beyond its reach a target may lead."""
-_ZERO, _BACK = 1e-3, 1e-3
-"""How strongly rest and the pose before hold, where every FAP is given."""
-_SHUT = 2.0
-"""The weight of an eye's being shut beside one for each lid."""
+_ZERO, _BEGIN, _BACK = 1e-3, 1e-3, 1e-2
+"""How strongly rest holds where every FAP is given, the pose that a first frame begins with, and the frame before."""
+_SHUT, _CLOSED, _SHARES = 2.0, 6.0, 0.25
+"""The weight of an eye's being shut beside one for each lid; of one that is to be closed, and of its lids then."""
+_CLOSING = 0.85
+"""Of the way to closed: an eye that is to be farther is to be closed, whatever its lids share of it."""
+_SERVES = 0.3
+"""Of a parameter's largest effect: FAPs that it does less for do not move it by themselves."""
 _TOLD = 0.05
 """Of a FAP's range: what is missed by more is told."""
 
@@ -101,7 +106,8 @@ class FapSolver:
         count, free = len(self.meter.faps), len(self.fit.problem.free)
         self._usable = np.append(self.fit.usable, [True] * len(LIDS))
         self._tikhonov = _ZERO * np.eye(free)
-        self._serves = self.fit.problem.pattern[:count] > 0.0
+        effect = np.abs(self.fit.problem.jacobian[:count])
+        self._serves = effect > _SERVES * np.maximum(effect.max(axis=0, initial=0.0), 1e-9)
         self._shut_rows = [np.isin(self.meter.columns, np.array(pair) - 1) for pair in LIDS]
 
     def solve(
@@ -129,7 +135,8 @@ class FapSolver:
             features += self.fit.gaze @ angles
         held: Mask = np.logical_not(self._serves[weight[: len(self._serves)] > 0.0].any(axis=0))
         prior = self._tikhonov if whole else self.fit.natural
-        wish = Wish(goal, weight, held, prior, _BACK, self.steps)
+        pull = _BEGIN if previous is None else _BACK
+        wish = Wish(goal, weight, held, prior, pull, self.steps)
         looks = int(self._solve(self._sight, self.fit.problem, wish, values, features))
         return self._told(asked, named, values, features, clamped, held, looks)
 
@@ -160,10 +167,16 @@ class FapSolver:
         target = asked[columns]
         near = _within(target, fit.low, fit.high, _SOFT * fit.ranges)
         used = named[columns] & fit.usable
-        shut = [target[rows].sum() / CLOSED for rows in self._shut_rows]
-        shut_used = [bool(used[rows].all()) for rows in self._shut_rows]
-        goal = np.append(self._features.matrix[: len(columns)].diagonal() * near, np.minimum(shut, 1.0))
-        weight = np.append(used.astype(np.float64), _SHUT * np.array(shut_used))
+        weight = used.astype(np.float64)
+        shut, of_shut = np.zeros((2, len(LIDS)))
+        for eye, rows in enumerate(self._shut_rows):
+            if used[rows].all():
+                shut[eye] = min(1.0, target[rows].sum() / CLOSED)
+                closing = float(smoothstep(_CLOSING, 1.0, shut[eye]))
+                weight[rows] += closing * (_SHARES - 1.0)
+                of_shut[eye] = _SHUT + closing * (_CLOSED - _SHUT)
+        goal = np.append(self._features.matrix[: len(columns)].diagonal() * near, shut)
+        weight = np.append(weight, of_shut)
         return goal, weight, (target < fit.low) | (target > fit.high)
 
     def _told(

@@ -24,8 +24,8 @@ ROUNDS, SWEEPS, SMALL = 4, 3, 1e-4
 """Rounds of the minimum in a box at most, sweeps a round, and the change from which on a further sweep is worth it."""
 DAMP, EASE, FIRM = 0.03, 0.3, 4.0
 """The least damping after a step that made it worse, and its factors after a good and a bad step."""
-FLAT, STILL = 2e-3, 2e-3
-"""A gain, as part of what is left, and a step, from which on a further step is not worth it."""
+FLAT, STILL, NEAR = 2e-3, 2e-3, 2e-3
+"""A gain, as part of what is left, a step, and a feature's miss, from which on a further step is not worth it."""
 SHORT = 1e-8  # a squared step that tells nothing of the Jacobian
 SHARE = 1e-3  # of a squared step, the least part that a row's update is divided by
 
@@ -99,7 +99,7 @@ def solve(sight: PlainSight, problem: Problem, wish: Wish, values: Floats, featu
             gain, cost, damp = cost - now, now, EASE * damp
             x[:], features[:] = new, seen
             values[:] = trial
-            if gain < FLAT * now or np.abs(step).max() < STILL:
+            if gain < FLAT * now or np.abs(step).max() < STILL or miss @ miss < NEAR * NEAR * len(miss):
                 break
         else:
             damp = max(FIRM * damp, DAMP)

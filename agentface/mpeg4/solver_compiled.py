@@ -12,6 +12,7 @@ from agentface.mpeg4.solver import (  # noqa: F401
     EASE,
     FIRM,
     FLAT,
+    NEAR,
     ROUNDS,
     SHARE,
     SHORT,

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 
@@ -48,10 +50,10 @@ def test_left_and_right_are_each_other_s_images(face):
 def test_points_lie_as_the_standard_orders_them(face):
     at = {number: point.position for number, point in feature_points(head_model(face)).items()}
     down = ("11.4", "11.1", "4.1", "3.13", "3.1", "3.5", "3.3", "3.9", "9.3", "9.15", "8.1", "2.2")
-    assert all(at[above][1] > at[below][1] for above, below in zip(down, down[1:], strict=False))
+    assert all(at[above][1] > at[below][1] for above, below in pairwise(down))
     assert at["2.2"][1] >= at["2.3"][1] > at["8.2"][1] > at["2.10"][1] > at["2.1"][1]
     across = ("8.3", "8.5", "8.10", "8.1", "8.9", "8.6", "8.4")
-    assert all(at[left][0] > at[right][0] for left, right in zip(across, across[1:], strict=False))
+    assert all(at[left][0] > at[right][0] for left, right in pairwise(across))
     assert at["8.3"][0] > at["2.4"][0] > at["2.6"][0] > at["2.2"][0] + 0.003
     assert at["9.12"][1] < at["9.7"][1]
     assert at["9.12"][1] > at["9.3"][1]
@@ -88,11 +90,11 @@ def test_units_are_a_1024th_of_a_face(face):
     model = head_model(face)
     units = fapu(model)
     at = {number: point.position.astype(float) for number, point in feature_points(model).items()}
-    assert units.ES * PARTS == pytest.approx(model.landmarks.eye_separation, abs=1e-6)
-    assert units.MW * PARTS == pytest.approx(np.linalg.norm(at["8.3"] - at["8.4"]), rel=1e-4)
-    assert units.ENS * PARTS == pytest.approx(at["3.5"][1] - at["9.15"][1], abs=1e-6)
-    assert units.MNS * PARTS == pytest.approx(at["9.15"][1] - at["2.2"][1], abs=1e-6)
-    assert units.IRISD * PARTS == pytest.approx(at["3.1"][1] - at["3.3"][1], abs=1e-6)
+    assert pytest.approx(model.landmarks.eye_separation, abs=1e-6) == units.ES * PARTS
+    assert pytest.approx(np.linalg.norm(at["8.3"] - at["8.4"]), rel=1e-4) == units.MW * PARTS
+    assert pytest.approx(at["3.5"][1] - at["9.15"][1], abs=1e-6) == units.ENS * PARTS
+    assert pytest.approx(at["9.15"][1] - at["2.2"][1], abs=1e-6) == units.MNS * PARTS
+    assert pytest.approx(at["3.1"][1] - at["3.3"][1], abs=1e-6) == units.IRISD * PARTS
     # a face's proportions: an eye's opening is less than the nose's and the mouth's distances
     assert 0.008 < units.IRISD * PARTS < 0.013 < units.MNS * PARTS < units.ENS * PARTS < units.ES * PARTS * 1.05
     assert units.of("AU") == 1e-5
