@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 
@@ -145,9 +147,8 @@ def test_a_growing_wish_is_followed_without_a_jump():
 def test_a_stream_is_followed_frame_by_frame():
     face = "amber"
     ends = some_poses("natural", 4, 12)
-    walk = np.concatenate(
-        [a + np.linspace(0, 1, 12, endpoint=False)[:, None] * (b - a) for a, b in zip(ends, ends[1:])]
-    )
+    way = np.linspace(0, 1, 12, endpoint=False)[:, None]
+    walk = np.concatenate([a + way * (b - a) for a, b in pairwise(ends)])
     targets = measured(face, walk.astype(np.float32)).astype(float)
     solver, found, poses = solver_of(face), None, []
     for target in targets:

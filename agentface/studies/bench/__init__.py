@@ -20,6 +20,7 @@ BENCHES: dict[str, str] = {
     "render": "a picture in both qualities and two sizes, stage by stage, beside clearing and reading one back",
     "start": "a picture from a command, and first faces, beside importing the libraries",
     "tissue": "the second paper's results: semi-implicit, adaptive and our solver on five expressions",
+    "mpeg4": "FAPs measured and solved, and the errors of the round trip, beside scipy",
     "texture": "a picture worn as skin: how finely it lies, how emotions strain it, what drawing it costs",
 }
 """The benchmarks and what they compare; each is a module of this package with ``run() -> dict``."""
