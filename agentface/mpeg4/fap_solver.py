@@ -16,7 +16,7 @@ from agentface.kernel import can_compile
 from agentface.mesh.smoothstep import smoothstep
 from agentface.mpeg4 import sight, solver
 from agentface.mpeg4.fap_fit import CLOSED, LIDS, fap_fit, features_of
-from agentface.mpeg4.faps import FAP_COUNT
+from agentface.mpeg4.faps import FAP_COUNT, fap
 from agentface.mpeg4.gaze import GivenAngles
 from agentface.mpeg4.jacobian import Looks
 from agentface.mpeg4.meter import FapMeter
@@ -139,6 +139,16 @@ class FapSolver:
         wish = Wish(goal, weight, held, prior, pull, self.steps)
         looks = int(self._solve(self._sight, self.fit.problem, wish, values, features))
         return self._told(asked, named, values, features, clamped, held, looks)
+
+    def reach(self, number: int) -> tuple[float, float]:
+        """The least and the largest value, in units, that some pose shows of a FAP; 0 and 0 where it has no range.
+
+        Raises InvalidValueError for what is no number of a FAP.
+        """
+        place = np.flatnonzero(self.meter.columns == fap(number).number - 1)
+        if not len(place) or not self.fit.usable[place[0]]:
+            return 0.0, 0.0
+        return float(self.fit.low[place[0]]), float(self.fit.high[place[0]])
 
     def measured(self, values: Floats) -> Doubles:
         """``(68,)`` units: what a pose, ``values (COUNT,)``, shows on the geometric face."""

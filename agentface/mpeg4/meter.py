@@ -42,7 +42,7 @@ class FapMeter:
     """
 
     def __init__(self, model: HeadModel, *, compiled: bool = True) -> None:
-        self.model, self.units = model, fapu(model)
+        self.model, self.units, self.points = model, fapu(model), feature_points(model)
         self.faps = tuple(fap for fap in LOW_LEVEL if fap.number in JAW or _reads_skin(model, fap))
         """Those that are read off points, in the order of their numbers."""
         self.columns = np.array([fap.number - 1 for fap in self.faps])

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -84,7 +85,7 @@ def errors(shown: Floats, asked: Floats, ranges: Floats) -> dict[str, Any]:
 def stream(poses: Floats, frames: int = _FRAMES) -> Floats:
     """``(F, COUNT)``: straight from each pose to the next in ``frames`` frames."""
     way = np.linspace(0.0, 1.0, frames, endpoint=False, dtype=np.float32)[:, None]
-    return np.concatenate([one + way * (other - one) for one, other in zip(poses[:-1], poses[1:], strict=True)])
+    return np.concatenate([one + way * (other - one) for one, other in pairwise(poses)])
 
 
 def _followed(solver: FapSolver, targets: Floats) -> Floats:

@@ -19,6 +19,8 @@ FIGURES: dict[str, str] = {
     "muscles": "the muscles on the face, by name and action unit",
     "regions": "the regions and sub-regions of the face",
     "rings": "the rings of vertices round mouth and eyes",
+    "feature_points": "the feature points of MPEG-4 with their numbers",
+    "faps": "each FAP at both ends of what the faces show of it, a sheet a group",
     "looks": "the faces in their looks, and the styles of hair",
     "expressions": "Figures 13 to 16: neutral, surprise, happiness, sadness",
     "springs": "the second paper's Figure 2: the three layers, and the springs in and between them",
