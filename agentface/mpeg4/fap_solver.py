@@ -31,8 +31,8 @@ _ZERO, _BEGIN, _BACK = 1e-3, 1e-3, 1e-2
 """How strongly rest holds where every FAP is given, the pose that a first frame begins with, and the frame before."""
 _SHUT, _CLOSED, _SHARES = 2.0, 6.0, 0.25
 """The weight of an eye's being shut beside one for each lid; of one that is to be closed, and of its lids then."""
-_CLOSING = 0.85
-"""Of the way to closed: an eye that is to be farther is to be closed, whatever its lids share of it."""
+_CLOSING, _AJAR = 0.85, 0.02
+"""Of the way to closed: an eye that is to be farther is to be closed, whatever its lids share of it; what is ajar."""
 _SERVES = 0.3
 """Of a parameter's largest effect: FAPs that it does less for do not move it by themselves."""
 _TOLD = 0.05
@@ -81,20 +81,20 @@ class FapSolver:
         self.meter = FapMeter(model, compiled=compiled)
         self._solve: Callable[..., int] = solver.solve
         self._look: Callable[..., None] = sight.look
-        look_at_all: Callable[..., None] = sight.look_at_all
         new_sight: Callable[[HeadModel, Features], Any] = sight.PlainSight
         if compiled and can_compile():
             from agentface.mpeg4 import sight_compiled, solver_compiled
 
             self._solve, self._look = solver_compiled.solve, sight_compiled.look
-            look_at_all, new_sight = sight_compiled.look_at_all, sight_compiled.new_sight
+            new_sight = sight_compiled.new_sight
 
         def looks(features: Features) -> Looks:
             eye = new_sight(model, features)
 
             def look(poses: Floats) -> Doubles:
                 out = np.empty((len(poses), len(features.matrix)))
-                look_at_all(eye, np.ascontiguousarray(poses, np.float32), out)
+                for values, row in zip(np.ascontiguousarray(poses, np.float32), out, strict=True):
+                    self._look(eye, values, row)
                 return out
 
             return look
@@ -124,7 +124,7 @@ class FapSolver:
         Raises InvalidValueError for another shape and for what is not finite.
         """
         asked, named = _checked(faps, mask)
-        goal, weight, clamped = self._wish(asked, named)
+        goal, weight, closing, clamped = self._wish(asked, named)
         whole = bool((weight[self._usable] > 0.0).all())
         values, features = self._start(goal if whole else None, previous)
         angles = self._given.apply(asked, named, values)
@@ -138,6 +138,10 @@ class FapSolver:
         pull = _BEGIN if previous is None else _BACK
         wish = Wish(goal, weight, held, prior, pull, self.steps)
         looks = int(self._solve(self._sight, self.fit.problem, wish, values, features))
+        short = (closing > 0.0) & (features[-len(LIDS) :] < (1.0 - _AJAR) * goal[-len(LIDS) :])
+        if short.any():
+            wish = wish._replace(weight=self._closing(weight, np.where(short, closing, 0.0)))
+            looks += int(self._solve(self._sight, self.fit.problem, wish, values, features))
         return self._told(asked, named, values, features, clamped, held, looks)
 
     def reach(self, number: int) -> tuple[float, float]:
@@ -172,22 +176,27 @@ class FapSolver:
         nearest = int(away.argmin())
         return self.fit.starts[nearest].copy(), self.fit.shown[nearest].copy()
 
-    def _wish(self, asked: Doubles, named: Mask) -> tuple[Doubles, Doubles, Mask]:
+    def _closing(self, weight: Doubles, closing: Doubles) -> Doubles:
+        """Weights for eyes that are to be closed as far as ``closing`` says: the sum of an eye's lids before each."""
+        firm = weight.copy()
+        for eye, rows in enumerate(self._shut_rows):
+            firm[: len(rows)][rows] *= 1.0 + closing[eye] * (_SHARES - 1.0)
+            firm[len(rows) + eye] += closing[eye] * (_CLOSED - _SHUT)
+        return firm
+
+    def _wish(self, asked: Doubles, named: Mask) -> tuple[Doubles, Doubles, Doubles, Mask]:
+        """Goal and weights of the features, how far each eye is to be closed, and which targets were bent back."""
         fit, columns = self.fit, self.meter.columns
         target = asked[columns]
         near = _within(target, fit.low, fit.high, _SOFT * fit.ranges)
         used = named[columns] & fit.usable
-        weight = used.astype(np.float64)
-        shut, of_shut = np.zeros((2, len(LIDS)))
+        shut, both = np.zeros(len(LIDS)), np.zeros(len(LIDS))
         for eye, rows in enumerate(self._shut_rows):
             if used[rows].all():
-                shut[eye] = min(1.0, target[rows].sum() / CLOSED)
-                closing = float(smoothstep(_CLOSING, 1.0, shut[eye]))
-                weight[rows] += closing * (_SHARES - 1.0)
-                of_shut[eye] = _SHUT + closing * (_CLOSED - _SHUT)
+                shut[eye], both[eye] = min(1.0, target[rows].sum() / CLOSED), 1.0
         goal = np.append(self._features.matrix[: len(columns)].diagonal() * near, shut)
-        weight = np.append(weight, of_shut)
-        return goal, weight, (target < fit.low) | (target > fit.high)
+        weight = np.append(used.astype(np.float64), _SHUT * both)
+        return goal, weight, smoothstep(_CLOSING, 1.0, shut), (target < fit.low) | (target > fit.high)
 
     def _told(
         self, asked: Doubles, named: Mask, values: Floats, features: Doubles, clamped: Mask, held: Mask, looks: int

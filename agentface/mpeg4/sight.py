@@ -46,9 +46,3 @@ class PlainSight:
 def look(sight: PlainSight, values: Floats, out: Doubles) -> None:
     """Write the features of the pose ``values (COUNT,)`` into ``out (N,)``."""
     sight.look(values, out)
-
-
-def look_at_all(sight: PlainSight, poses: Floats, out: Doubles) -> None:
-    """Write the features of ``poses (B, COUNT)`` into ``out (B, N)``."""
-    for index in range(poses.shape[0]):
-        look(sight, poses[index], out[index])

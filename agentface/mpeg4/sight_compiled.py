@@ -18,8 +18,7 @@ from agentface.deform.order import Stage
 from agentface.deform.order_compiled import Scratch, finish, shape
 from agentface.deform.tables import FaceTables
 from agentface.head.model import HeadModel
-from agentface.kernel import compiled_twin, kernel
-from agentface.mpeg4 import sight as plain
+from agentface.kernel import kernel
 from agentface.mpeg4.readings import Kind, Readings
 from agentface.mpeg4.readings_compiled import read
 from agentface.mpeg4.sight import Features
@@ -64,6 +63,3 @@ def look(sight: Sight, values: Floats, out: Doubles) -> None:
     finish(_JAW, _JAW, sight.tables.finish, values, face)
     read(sight.readings, face, sight.numbers)
     np.dot(sight.matrix, sight.numbers, out)
-
-
-look_at_all = compiled_twin(plain.look_at_all, globals(), error_model="numpy")

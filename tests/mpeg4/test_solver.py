@@ -83,7 +83,8 @@ def test_any_linear_features_are_solved_for():
 
     def look(poses):
         out = np.empty((len(poses), 80))
-        sight_compiled.look_at_all(sight, np.ascontiguousarray(poses, np.float32), out)
+        for pose, row in zip(np.ascontiguousarray(poses, np.float32), out, strict=True):
+            sight_compiled.look(sight, pose, row)
         return out
 
     free = np.array([indices_of(name)[0] for name in VECTOR_MUSCLES], np.int32)
