@@ -113,7 +113,7 @@ def next_step(
     """Write the minimum of the frame's quadratic, in the box from ``low`` to ``high``, into ``new``: the start, too."""
     weight = wish.weight
     rows = jacobian * weight.reshape(-1, 1)
-    a = rows.T @ rows
+    a = gram(rows)
     b = (weight * (wish.goal - features)) @ rows + a @ x + wish.pull * back + damp * x
     a += wish.prior
     for i in range(len(x)):
@@ -153,7 +153,7 @@ def box_minimum(a: Doubles, b: Doubles, low: Doubles, high: Doubles, x: Doubles)
                 by = to - x[i]
                 if by != 0.0:
                     x[i] = to
-                    slope += by * a[i]
+                    accumulate(slope, by, a[i])
                     largest = max(largest, abs(by))
             if largest < SMALL:
                 return turn + 1
@@ -165,17 +165,32 @@ def whole_step(a: Doubles, low: Doubles, high: Doubles, x: Doubles, slope: Doubl
     """Step to the minimum over the coordinates that lie inside the box, back to its sides, if that descends."""
     inside = np.flatnonzero((x > low) & (x < high))
     count = len(inside)
-    part, right = np.empty((count, count)), np.empty((count, 1))
+    part, way = np.empty((count, count)), np.empty(count)
     for i in range(count):
-        right[i, 0] = -slope[inside[i]]
+        way[i] = -slope[inside[i]]
         for j in range(count):
             part[i, j] = a[inside[i], inside[j]]
-    way = np.linalg.solve(part, right)
+    settle(part, way)
     step, curve = np.zeros(len(x)), np.zeros(len(x))
     for i in range(count):
         k = inside[i]
-        step[k] = min(max(x[k] + way[i, 0], low[k]), high[k]) - x[k]
-        curve += step[k] * a[k]
+        step[k] = min(max(x[k] + way[i], low[k]), high[k]) - x[k]
+        accumulate(curve, step[k], a[k])
     if step @ slope + 0.5 * (step @ curve) < 0.0:
         x += step
         slope += curve
+
+
+def gram(rows: Doubles) -> Doubles:
+    """``rows' rows``."""
+    return np.asarray(rows.T @ rows)
+
+
+def accumulate(out: Doubles, by: float, row: Doubles) -> None:
+    """Add ``by`` times ``row`` to ``out``."""
+    out += by * row
+
+
+def settle(a: Doubles, right: Doubles) -> None:
+    """Turn ``right (F,)`` into the solution of a x = right; ``a (F, F)`` is symmetric, positive definite, and lost."""
+    right[:] = np.linalg.solve(a, right)
