@@ -20,6 +20,7 @@ from agentface.emotion.state import EMOTIONS, NEUTRAL, EmotionState, canonical_o
 from agentface.errors import InvalidValueError
 from agentface.head.model import HeadModel, load_model
 from agentface.motion.mixer import Mixer
+from agentface.motion.performance import Performance
 from agentface.parameters import CONTRACTIONS, HELD, MUSCLES, FacePose
 from agentface.requests import (
     FADE_S,
@@ -28,6 +29,7 @@ from agentface.requests import (
     Blink,
     LookAt,
     Neutral,
+    Play,
     Request,
     SetActionUnit,
     SetEmotion,
@@ -174,6 +176,13 @@ class Face:
     def set_head(self, yaw_deg: float, pitch_deg: float, roll_deg: float = 0.0, *, fade: float = HEAD_FADE_S) -> None:
         """Turn the head to its left (-80..80), up (-60..60), and tilt it to its left (-50..50)."""
         self.apply(SetHead(yaw_deg, pitch_deg, roll_deg, fade))
+
+    def play(self, performance: Performance | None, *, fade: float = 0.0) -> None:
+        """Play poses over time from now on, and let go when they end; None ends the one that is played.
+
+        With a fade of 0 every frame is hit exactly; else the face comes to it from what it shows in ``fade`` seconds.
+        """
+        self.apply(Play(performance, fade))
 
     def blink(self) -> None:
         """Blink once."""

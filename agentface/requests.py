@@ -18,6 +18,7 @@ from agentface.conventions import check_duration, check_finite, check_fraction, 
 from agentface.emotion.state import NEUTRAL, EmotionState, canonical_or_neutral
 from agentface.errors import InvalidValueError, UnknownNameError
 from agentface.facs.action_units import check_intensity, check_side, check_unit
+from agentface.motion.performance import Performance
 from agentface.parameters import PARAMETERS, check_degrees, indices_of, muscle_names, parameter, parameter_names
 
 if TYPE_CHECKING:
@@ -146,6 +147,31 @@ class Neutral(Request):
     def apply(self, face: Movable) -> None:
         """Tell every channel."""
         face.channels.release(self.fade)
+
+
+@dataclass(frozen=True, slots=True)
+class Play(Request):
+    """A performance from its beginning, in place of the one that is played.
+
+    Attributes:
+        performance: poses over time; None ends the one that is played.
+        fade: seconds until the face has come to it from what it shows; with 0 every frame is hit exactly.
+    """
+
+    performance: Performance | None
+    fade: float = 0.0
+
+    def __post_init__(self) -> None:
+        if not isinstance(self.performance, Performance | None):
+            raise InvalidValueError("performance", "a Performance or None", self.performance)
+        self._keep(fade=check_duration("fade", self.fade))
+
+    def apply(self, face: Movable) -> None:
+        """Tell the performances' channel."""
+        if self.performance is None:
+            face.channels.performance.release(self.fade)
+        else:
+            face.channels.performance.play(self.performance, self.fade)
 
 
 @dataclass(frozen=True, slots=True)

@@ -13,11 +13,13 @@ from hypothesis import strategies as st
 from agentface import EmotionState, Face, requests
 from agentface.emotion.state import ALIASES, EMOTIONS
 from agentface.errors import InvalidValueError, UnknownNameError
-from agentface.parameters import MUSCLES, NAMES, PARAMETERS, parameter
+from agentface.motion.performance import Performance
+from agentface.parameters import COUNT, MUSCLES, NAMES, PARAMETERS, parameter
 from agentface.requests import (
     Blink,
     LookAt,
     Neutral,
+    Play,
     Request,
     SetActionUnit,
     SetEmotion,
@@ -31,6 +33,9 @@ from tests.heads import head_model
 
 FRACTIONS = st.floats(0, 1)
 FADES = st.floats(0, 2)
+PERFORMED = Performance.regular(
+    10, np.repeat(np.linspace(0, 0.2, 5, dtype=np.float32)[:, None], COUNT, 1), np.ones((1, COUNT))
+)
 ANY_REQUEST = st.one_of(
     st.builds(SetEmotion, st.sampled_from((*EMOTIONS, *ALIASES, "neutral")), FRACTIONS, FADES, st.none() | FADES),
     st.builds(SetEmotions, st.dictionaries(st.sampled_from(EMOTIONS), FRACTIONS), FADES, st.none() | FADES),
@@ -42,6 +47,7 @@ ANY_REQUEST = st.one_of(
     st.builds(LookAt, st.floats(-0.2, 0.2), st.floats(-0.2, 0.2), st.floats(0.5, 2), FADES),
     st.builds(SetHead, st.floats(-80, 80), st.floats(-60, 60), st.floats(-50, 50), FADES),
     st.builds(Blink),
+    st.builds(Play, st.none() | st.sampled_from([PERFORMED]), FADES),
 )
 
 
@@ -65,7 +71,7 @@ def test_every_kind_is_tried_here():
     made = {name for name, kind in vars(requests).items() if isinstance(kind, type) and issubclass(kind, Request)}
     assert made - {"Request"} == {
         "SetEmotion", "SetEmotions", "Neutral", "SetMuscle", "SetParameter", "SetActionUnit", "SetGaze", "LookAt",
-        "SetHead", "Blink",
+        "SetHead", "Blink", "Play",
     }  # fmt: skip
 
 
@@ -106,6 +112,7 @@ def test_the_methods_of_a_face_make_requests(face):
     face.look_at(np.array([0.1, 0.0, 0.6]))
     face.set_head(10, 20)
     face.blink()
+    face.play(None, fade=0.1)
     assert noted == [
         SetEmotion("happiness", 0.5, 0.1, 1.0),
         SetEmotions(EmotionState.of(sadness=0.25)),
@@ -119,6 +126,7 @@ def test_the_methods_of_a_face_make_requests(face):
         LookAt(0.1, 0.0, 0.6),
         SetHead(10.0, 20.0, 0.0),
         Blink(),
+        Play(None, 0.1),
     ]
 
 
@@ -149,6 +157,8 @@ def test_the_methods_of_a_face_make_requests(face):
         (lambda: LookAt(0, 0, math.nan), "finite"),
         (lambda: LookAt.of((1, 2)), "x, y and z"),
         (lambda: LookAt.of(3), "x, y and z"),
+        (lambda: Play("nod.fap"), "a Performance"),
+        (lambda: Play(None, -1), "seconds"),
     ],
 )
 def test_what_is_wrong_is_refused_where_it_is_made(make, said):

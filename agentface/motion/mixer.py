@@ -17,6 +17,7 @@ from agentface.motion.channel import Channel, Rank
 from agentface.motion.conflicts import Conflicts, default_conflicts
 from agentface.motion.emotion import EmotionChannel, EmotionRules
 from agentface.motion.muscles import MuscleChannel
+from agentface.motion.playing import PerformanceChannel
 from agentface.motion.turns import TurnChannel
 from agentface.parameters import COUNT, HIGH, LOW, NEUTRAL, WAYS, FacePose, Way, parameter
 
@@ -78,9 +79,9 @@ def _compact(places: list[int]) -> slice | npt.NDArray[np.intp]:
 class Mixer(MutableMapping[str, Channel]):
     """Channels by name; each is blended over those of lower priority, by the ways and priorities of its rank.
 
-    The face's own are ``emotion``, ``gaze``, ``head``, ``action_units``, ``blink`` and ``muscles``, also to be had as
-    attributes; they stay. A program adds others, ``mixer["breath"] = channel`` or :meth:`add`, and deletes them again;
-    a face shows it from its next step on.
+    The face's own are ``emotion``, ``gaze``, ``head``, ``action_units``, ``performance``, ``blink`` and ``muscles``,
+    also to be had as attributes; they stay. A program adds others, ``mixer["breath"] = channel`` or :meth:`add`, and
+    deletes them again; a face shows it from its next step on.
 
     Args:
         rules: what makes contractions of emotions.
@@ -99,6 +100,7 @@ class Mixer(MutableMapping[str, Channel]):
         self.gaze = self._own("gaze", TurnChannel("gaze"))
         self.head = self._own("head", TurnChannel("head"))
         self.action_units = self._own("action_units", ActionUnitChannel())
+        self.performance = self._own("performance", PerformanceChannel())
         self.blink = self._own("blink", BlinkChannel())
         self.muscles = self._own("muscles", MuscleChannel())
         self._fixed = frozenset(self._layers)
