@@ -9,7 +9,7 @@ from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from difflib import get_close_matches
 from pathlib import Path
-from typing import NamedTuple
+from typing import NamedTuple, NoReturn
 
 
 class AgentFaceError(Exception):
@@ -51,6 +51,39 @@ class DataError(AgentFaceError):
 
     def __reduce__(self) -> tuple[type[DataError], tuple[Sequence[Fault]]]:
         return type(self), (self.faults,)
+
+
+class FaultList:
+    """The faults of one file as a reader finds them; bounded, for a file can have as many as it has bytes.
+
+    Args:
+        file: what messages call it.
+        most: how many are looked for.
+    """
+
+    def __init__(self, file: str | Path, most: int = 20) -> None:
+        self.file = Path(file)
+        self._most = most
+        self._faults: list[Fault] = []
+
+    def tell(self, line: int | None, where: str, expected: str, got: object, hint: str = "") -> None:
+        """Note one; raises DataError when there are as many as are looked for."""
+        self._faults.append(Fault(self.file, line, where, expected, str(got), hint))
+        if len(self._faults) >= self._most:
+            self.check()
+
+    def stop(self, line: int | None, where: str, expected: str, got: object, hint: str = "") -> NoReturn:
+        """Note one after which nothing can be read; raises DataError."""
+        self.tell(line, where, expected, got, hint)
+        raise DataError(self._faults)
+
+    def check(self) -> None:
+        """Raise DataError when there is any."""
+        if self._faults:
+            raise DataError(sorted(self._faults, key=lambda fault: fault.line or 0))
+
+    def __bool__(self) -> bool:
+        return bool(self._faults)
 
 
 class UnknownNameError(AgentFaceError, KeyError):
@@ -103,6 +136,11 @@ class OutputError(AgentFaceError):
 
 class ServerError(AgentFaceError):
     """A server that cannot start, for example because its port is taken."""
+
+
+def shown(text: str, longest: int = 40) -> str:
+    """What came, as a message quotes it: in quotes, printable, and not too long."""
+    return repr(text) if len(text) <= longest else f"{text[: longest - 3]!r}..."
 
 
 def did_you_mean(got: object, known: Sequence[str]) -> str:

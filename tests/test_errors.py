@@ -9,7 +9,16 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from agentface.errors import DataError, Fault, GraphicsError, InvalidValueError, Place, UnknownNameError
+from agentface.errors import (
+    DataError,
+    Fault,
+    FaultList,
+    GraphicsError,
+    InvalidValueError,
+    Place,
+    UnknownNameError,
+    shown,
+)
 from agentface.head.model import load_model
 from agentface.resources import face_folder
 
@@ -45,3 +54,27 @@ def test_a_muscle_s_error_has_its_place_in_the_table():
     with pytest.raises(InvalidValueError, match="muscle risorius_l: zone") as caught:
         type(muscles)(**{name: getattr(muscles, name) for name in muscles.__slots__} | {"zone": zone})
     assert caught.value.place == Place("muscles.yaml", ("muscles", "risorius", "zone"))
+
+
+def test_a_list_of_faults_ends_where_it_is_told_to():
+    faults = FaultList("a.csv", most=3)
+    faults.check()
+    assert not faults
+    faults.tell(7, "time", "more than 1", 0.5)
+    faults.tell(2, "", "two fields", 3)
+    with pytest.raises(DataError) as caught:
+        faults.tell(9, "", "a number", "x")
+    assert [str(fault) for fault in caught.value.faults] == [
+        "a.csv:2: expected two fields, got 3",
+        "a.csv:7: time: expected more than 1, got 0.5",
+        "a.csv:9: expected a number, got x",
+    ]
+    with pytest.raises(DataError, match="expected an end"):
+        FaultList("b").stop(None, "", "an end", "none")
+
+
+@pytest.mark.parametrize(
+    ("text", "quoted"), [("a\nb", r"'a\nb'"), ("\ud800\0", r"'\ud800\x00'"), ("x" * 99, f"'{'x' * 37}'...")]
+)
+def test_what_came_is_quoted_printable_and_short(text, quoted):
+    assert shown(text) == quoted
