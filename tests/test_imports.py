@@ -24,6 +24,7 @@ LAYERS = (
     ("emotion", "deform", "facs"),
     ("tissue", "mpeg4"),
     ("motion",),
+    ("arkit",),
     ("requests",),
     ("view",),
     ("face",),
