@@ -17,6 +17,7 @@ COMMANDS = (
     "serve",
     "show",
     "play",
+    "convert",
     "explain",
     "check",
     "unwrap",

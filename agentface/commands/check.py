@@ -23,7 +23,9 @@ _Loader = Callable[[Path], object]
 @click.option("--strict", is_flag=True, help="Notes, of what a document says and the face does not show, are faults.")
 @deformer_option
 def check(*, files: tuple[Path, ...], face: str | None, strict: bool, deformer: str) -> None:
-    """Check rules, faces and EmotionML: files, folders, or, if none is named, all that come with agentface.
+    """Check rules, faces and performances: files, folders, or, if none is named, all that come with agentface.
+
+    Performances are EmotionML, .fap, tables of OpenFace, py-feat and Live Link Face, and poses in .json and .npz.
 
     Prints every fault with file and line; the exit code is 1 if there is any. A face need not have a tissue.yaml,
     unless --deformer is one that moves tissue.
@@ -79,26 +81,24 @@ def faults_of(place: str | Path, *, tissue: bool = False) -> list[Fault]:
 
 
 def _faults_of_file(path: Path) -> list[Fault]:
-    from agentface.io.emotionml import load_emotionml
-
-    if _is_emotionml(path):
-        return _faults_in(lambda: load_emotionml(path))
     readers = _rule_readers() | _face_readers()
     kind = "look.yaml" if path.parent.name == "looks" else path.name
-    if kind not in readers:
-        return [Fault(path, None, "", f"one of {', '.join(readers)}, or EmotionML in .xml", path.name)]
-    return _faults_in(lambda: readers[kind](path))
+    if kind in readers:
+        return _faults_in(lambda: readers[kind](path))
+    if path.suffix.lower() in (".yaml", ".yml", ".glb"):
+        return [Fault(path, None, "", f"one of {', '.join(readers)}, or a performance", path.name)]
+    from agentface.io.performances.kinds import load
 
-
-def _is_emotionml(path: Path) -> bool:
-    return path.suffix.lower() in (".xml", ".emotionml")
+    return _faults_in(lambda: load(path))
 
 
 def _notes_of(path: Path) -> list[Fault]:
-    """What of a document without faults is not shown."""
-    from agentface.io.emotionml import load_emotionml
+    """What of a performance without faults is not shown as it is written."""
+    if not path.is_file() or path.suffix.lower() in (".yaml", ".yml", ".glb"):
+        return []
+    from agentface.io.performances.kinds import load
 
-    return list(load_emotionml(path).notes) if _is_emotionml(path) and path.is_file() else []
+    return list(getattr(load(path)[1], "notes", ()))
 
 
 def _faults_in(read: Callable[[], object]) -> list[Fault]:

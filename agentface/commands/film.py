@@ -1,4 +1,4 @@
-"""What commands that film share: how a film is seen, where it goes, and the bar of its progress."""
+"""What commands that film share: how a film is seen, and where it goes."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from agentface.commands.streams import console
+from agentface.commands.progress import progress
 
 if TYPE_CHECKING:
     from agentface.conventions import Bytes
@@ -43,7 +43,7 @@ class Shot:
         """
         from agentface.live.films import FilmSink
 
-        with self._writer() as writer, _progress(self.path.name, last_s) as advance:
+        with self._writer() as writer, progress(self.path.name, last_s) as advance:
             yield FilmSink(self._drawing(model), writer, advance)
 
     def _drawing(self, model: HeadModel) -> Callable[[FaceGeometry], Bytes]:
@@ -72,16 +72,3 @@ class Shot:
         from agentface.io.video import VideoWriter
 
         return VideoWriter(self.path, self.size, self.fps, keep=self.live)
-
-
-@contextmanager
-def _progress(name: str, total_s: float | None) -> Iterator[Callable[[float], None]]:
-    from rich.progress import Progress
-
-    terminal = console()
-    if total_s is None or not terminal.is_terminal:
-        yield lambda _: None
-        return
-    with Progress(console=terminal) as progress:  # rich's own columns end with the time left
-        task = progress.add_task(name, total=total_s)
-        yield lambda time_s: progress.update(task, completed=time_s)

@@ -1,4 +1,4 @@
-"""``agentface play``: an EmotionML document in the window, or as a film."""
+"""``agentface play``: a file that moves the face, in the window, as a film, or measured in FAPs."""
 
 from __future__ import annotations
 
@@ -19,18 +19,16 @@ from agentface.commands.options import (
     make_face,
     size_option,
 )
+from agentface.commands.recordings import Opened, file_fps_option, measured, opened, player_of
 from agentface.commands.streams import tell
-from agentface.errors import DataError, Fault, GraphicsError
+from agentface.errors import GraphicsError
 
 if TYPE_CHECKING:
-    from agentface.emotion.score import Score
     from agentface.face import Face
-
-_MOST_NOTES = 5
 
 
 @click.command()
-@click.argument("document", type=click.Path(path_type=Path), metavar="FILE.xml")
+@click.argument("document", type=click.Path(path_type=Path), metavar="FILE")
 @click.option(
     "-o",
     "--output",
@@ -38,11 +36,22 @@ _MOST_NOTES = 5
     metavar="FILE.mp4",
     help="Film it instead; a name like face-%05d.png gives numbered transparent pictures.",
 )
+@click.option(
+    "--fap-out",
+    type=click.Path(path_type=Path),
+    metavar="FILE.fap",
+    help="Measure the face that is shown in MPEG-4 FAPs instead: no window, no picture. FAPs give as many frames back.",
+)
 @click.option("--loop", is_flag=True, help="Play it again and again, until the window is closed.")
 @click.option(
-    "--fps", type=click.FloatRange(1, 240), default=30.0, show_default=True, help="Frames a second of a film."
+    "--fps",
+    type=click.FloatRange(1, 240),
+    default=30.0,
+    show_default=True,
+    help="Frames a second of a film, or of --fap-out, which has the file's own if it is not given.",
 )
 @click.option("--strict", is_flag=True, help="Play nothing of a document that says what the face does not show.")
+@file_fps_option
 @look_option
 @size_option
 @live_quality_option
@@ -54,9 +63,11 @@ def play(
     *,
     document: Path,
     output: Path | None,
+    fap_out: Path | None,
     loop: bool,
     fps: float,
     strict: bool,
+    file_fps: float | None,
     look: str | None,
     size: tuple[int, int],
     quality: str | None,
@@ -64,64 +75,79 @@ def play(
     face: str,
     deformer: str,
 ) -> None:
-    """Play the emotions of an EmotionML document: in a window, in real time, or into a film.
+    """Play a file: in a window, in real time, or into a film.
+
+    EmotionML, MPEG-4 FAPs (.fap), OpenFace's, py-feat's and Live Link Face's tables (.csv), and poses (.json, .npz);
+    what is in the file says which it is.
 
     \b
     agentface play moods.xml
-    agentface play moods.xml -o moods.mp4 --quality portrait
+    agentface play smile.fap -o smile.mp4 --quality portrait
+    agentface play smile.fap --fap-out shown.fap
     """  # noqa: D301 - \b is click's mark of lines to keep
-    of_a_film = sorted(given(ctx) & {"fps", "size"})
-    if output is None and of_a_film:
-        raise click.UsageError(f"--{of_a_film[0]} goes with -o")
-    if output is not None and loop:
-        raise click.UsageError("--loop goes without -o")
-    score = _score(document, strict=strict)
+    _check_usage(given(ctx), output=output, fap_out=fap_out, loop=loop)
+    found = opened(document, file_fps, strict=strict)
+    if fap_out is not None:
+        _measure(found, make_face(face, deformer, running=True), fap_out, fps if "fps" in given(ctx) else None)
+        return
     shown = make_face(face, deformer, look=look, running=output is None)
     with until_told() as ending:
         if output is not None:
-            _film(shown, score, Shot(output, size, camera, quality or "fast", fps, look), ending)
+            _film(shown, found, Shot(output, size, camera, quality or "fast", fps, look), ending)
             return
         try:
-            _show(shown, score, ending, look, camera, quality, loop=loop)
+            _show(shown, found, ending, look, camera, quality, loop=loop)
         except GraphicsError as error:
             hint = f"To film the document instead:  agentface play {document} -o FILE.mp4"
             raise GraphicsError(f"{error}\n{hint}") from error
 
 
-def _score(document: Path, *, strict: bool) -> Score:
-    from agentface.io.emotionml import load_emotionml
-
-    if document.suffix.lower() == ".fap":
-        got = "an MPEG-4 FAP file"
-        raise DataError([Fault(document, None, "", "EmotionML, which is all that this version plays", got)])
-    score = load_emotionml(document, strict=strict)
-    for note in score.notes[:_MOST_NOTES]:
-        tell(f"note: {note}")
-    return score
+def _check_usage(options: set[str], *, output: Path | None, fap_out: Path | None, loop: bool) -> None:
+    if output is not None and fap_out is not None:
+        raise click.UsageError("--fap-out goes without -o")
+    if loop and (output or fap_out):
+        raise click.UsageError(f"--loop goes without {'-o' if output else '--fap-out'}")
+    if output is None and "size" in options:
+        raise click.UsageError("--size goes with -o")
+    if output is None and fap_out is None and "fps" in options:
+        raise click.UsageError("--fps goes with -o")
 
 
 def _show(
-    face: Face, score: Score, ending: Ending, look: str | None, camera: str, quality: str | None, *, loop: bool
+    face: Face, found: Opened, ending: Ending, look: str | None, camera: str, quality: str | None, *, loop: bool
 ) -> None:
     from agentface.commands.show import make_window
-    from agentface.live.scores import ScorePlayer
 
+    player, length_s = player_of(found, face, again=loop)
     window = make_window(face, look=look, quality=quality, camera=camera)
-    duration = math.inf if loop else score.length_s
-    window.run([ScorePlayer(face, score, again=loop)], duration=duration, stopped=ending.told)
+    window.run([player], duration=math.inf if loop else length_s, stopped=ending.told)
 
 
-def _film(face: Face, score: Score, shot: Shot, ending: Ending) -> None:
+def _film(face: Face, found: Opened, shot: Shot, ending: Ending) -> None:
     from agentface.clock import FrameClock
     from agentface.live.loop import run
-    from agentface.live.scores import ScorePlayer
 
-    fps, player = shot.fps, ScorePlayer(face, score)
-    frames = math.ceil(score.length_s * fps - 1e-6)
+    player, length_s = player_of(found, face)
+    fps = shot.fps
+    frames = math.ceil(length_s * fps - 1e-6)
     with shot.open(face.model, (frames - 1) / fps) as film:
         end = (frames - 0.5) / fps
         drawn = run(face, FrameClock(fps), [player], [film], fps=fps, duration=end, stopped=ending.told)
     if drawn < frames:
         filmed_s = max(drawn - 1, 0) / fps
-        tell(f"{shot.path}: stopped at {filmed_s:.1f} s of {score.length_s:.1f} s")
+        tell(f"{shot.path}: stopped at {filmed_s:.1f} s of {length_s:.1f} s")
         raise SystemExit(ending.code)
+
+
+def _measure(found: Opened, face: Face, path: Path, fps: float | None) -> None:
+    from agentface.io.files import check_writable
+    from agentface.io.performances.kinds import kind_named
+    from agentface.io.performances.writing import write
+
+    check_writable(path)
+    with until_told() as ending:
+        stream = measured(found, face, fps, ending.told)
+    if ending.told():
+        tell(f"{path}: stopped after {len(stream)} frames; nothing is written")
+        raise SystemExit(ending.code)
+    write(path, kind_named("fap"), stream)

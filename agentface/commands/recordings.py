@@ -1,0 +1,122 @@
+"""What commands that read performances share: the file, what the face makes of it, and what is measured of that."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from agentface.commands.progress import progress
+from agentface.commands.streams import tell
+from agentface.errors import DataError, Fault
+
+if TYPE_CHECKING:
+    from agentface.conventions import Floats
+    from agentface.deform.geometry import FaceGeometry
+    from agentface.face import Face
+    from agentface.io.performances.kinds import FileKind, Recording
+    from agentface.live.loop import Source
+    from agentface.motion.performance import Performance
+    from agentface.mpeg4.fap_stream import FapStream
+
+_MOST_NOTES = 5
+USUAL_HZ = 30.0
+
+file_fps_option = click.option(
+    "--file-fps",
+    type=click.FloatRange(0, 1000, min_open=True),
+    help="Frames a second of a file that does not say it: py-feat's (30 if not given), Live Link Face's timecode.",
+)
+
+
+@dataclass(frozen=True)
+class Opened:
+    """A file that was read, and what it holds."""
+
+    path: Path
+    kind: FileKind
+    recording: Recording
+
+    def tell_notes(self, notes: tuple[Fault, ...] | None = None) -> None:
+        """Print what of the file is not shown as it is written; a few of many."""
+        found = getattr(self.recording, "notes", ()) if notes is None else notes
+        for note in found[:_MOST_NOTES]:
+            tell(f"note: {note}")
+        if len(found) > _MOST_NOTES:
+            tell(f"note: {self.path}: {len(found) - _MOST_NOTES} more")
+
+    def performance(self, face: Face) -> Performance:
+        """What ``face`` makes of it, with a bar while that takes long; raises DataError."""
+        from agentface.io.performances.performing import Performer
+
+        with progress(self.path.name, self._frames) as told:
+            performance = Performer(face.model).performance(self.recording, self.path, told)
+        own = len(getattr(self.recording, "notes", ()))
+        self.tell_notes(performance.notes[own:])
+        return performance
+
+    @property
+    def _frames(self) -> float | None:
+        from agentface.mpeg4.fap_stream import FapStream
+
+        return len(self.recording) if isinstance(self.recording, FapStream) else None
+
+
+def opened(path: str | Path, file_fps: float | None, *, strict: bool = False) -> Opened:
+    """Read a file of any kind, and tell its notes; raises DataError, with ``strict`` also for notes."""
+    from agentface.io.performances.kinds import load
+
+    path = Path(path)
+    found = Opened(path, *load(path, file_fps))
+    if strict and (notes := getattr(found.recording, "notes", ())):
+        raise DataError(notes)
+    found.tell_notes()
+    return found
+
+
+def player_of(found: Opened, face: Face, *, again: bool = False) -> tuple[Source, float]:
+    """What plays the file to ``face``, and how many seconds it takes until the face has let go of it."""
+    from agentface.emotion.score import Score
+    from agentface.live.performances import PerformancePlayer
+    from agentface.live.scores import ScorePlayer
+
+    if isinstance(found.recording, Score):
+        return ScorePlayer(face, found.recording, again=again), found.recording.length_s
+    performance = found.performance(face)
+    return PerformancePlayer(face, performance, again=again), performance.length_s
+
+
+def measured(found: Opened, face: Face, fps: float | None, stopped: Callable[[], bool]) -> FapStream:
+    """The FAPs that ``face`` shows while it plays the file, without a picture.
+
+    Of FAPs, as many frames at the same rate, unless ``fps`` is given; of others, ``fps`` or their own rate, or 30.
+    """
+    from agentface.clock import FrameClock
+    from agentface.emotion.score import Score
+    from agentface.live.fap_recorder import FapRecorder
+    from agentface.live.loop import run
+    from agentface.live.performances import PerformancePlayer
+    from agentface.live.scores import ScorePlayer
+
+    source: Source
+    if isinstance(found.recording, Score):
+        source, last_s, own = ScorePlayer(face, found.recording), found.recording.length_s, None
+    else:
+        performance = found.performance(face)
+        source, last_s, own = PerformancePlayer(face, performance), performance.duration_s, performance.rate_hz
+    rate = fps or own or USUAL_HZ
+    frames = math.floor(last_s * rate + 1e-6) + 1
+    with progress(found.path.name, last_s) as told:
+        recorder = FapRecorder(_measure(face), told)
+        run(face, FrameClock(rate), [source], [recorder], fps=rate, duration=(frames - 0.5) / rate, stopped=stopped)
+    return recorder.stream(rate, getattr(found.recording, "name", "") or found.path.stem)
+
+
+def _measure(face: Face) -> Callable[[FaceGeometry], Floats]:
+    from agentface.mpeg4.meter import FapMeter
+
+    return FapMeter(face.model).measure
