@@ -19,6 +19,7 @@ from agentface.emotion.inference import default_inference
 from agentface.emotion.state import EMOTIONS, NEUTRAL, EmotionState, canonical_or_neutral
 from agentface.errors import InvalidValueError
 from agentface.head.model import HeadModel, load_model
+from agentface.motion.faps import STREAM_FADE_S
 from agentface.motion.mixer import Mixer
 from agentface.motion.performance import Performance
 from agentface.parameters import CONTRACTIONS, HELD, MUSCLES, FacePose
@@ -34,6 +35,7 @@ from agentface.requests import (
     SetActionUnit,
     SetEmotion,
     SetEmotions,
+    SetFaps,
     SetGaze,
     SetHead,
     SetMuscle,
@@ -156,6 +158,21 @@ class Face:
     ) -> None:
         """Show an action unit of FACS at 0..1, or at a letter A to E, on both sides, or on ``left`` or ``right``."""
         self.apply(SetActionUnit(number, intensity, side, fade))  # type: ignore[arg-type]  # takes letters, keeps numbers
+
+    def set_faps(
+        self,
+        faps: Mapping[int, float],
+        *,
+        viseme: Sequence[int] | None = None,
+        expression: Sequence[int] | None = None,
+        fade: float = STREAM_FADE_S,
+    ) -> None:
+        """Show a frame of MPEG-4 FAPs by number 3..68, in their units; what it does not name is left to others.
+
+        ``viseme`` has the four fields of FAP 1, ``expression`` the six of FAP 2. Half a second after the last frame
+        the face lets go of it.
+        """
+        self.apply(SetFaps(faps, viseme, expression, fade))  # type: ignore[arg-type]  # takes what it makes tuples of
 
     def set_jaw(self, opening: float | None, *, fade: float = FADE_S) -> None:
         """Hold the jaw open at 0..1 of its widest opening; None releases it."""

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 from abc import ABC, abstractmethod
-from collections.abc import Hashable, Sequence
+from collections.abc import Hashable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Protocol
 
@@ -18,7 +18,9 @@ from agentface.conventions import check_duration, check_finite, check_fraction, 
 from agentface.emotion.state import NEUTRAL, EmotionState, canonical_or_neutral
 from agentface.errors import InvalidValueError, UnknownNameError
 from agentface.facs.action_units import check_intensity, check_side, check_unit
+from agentface.motion.faps import STREAM_FADE_S
 from agentface.motion.performance import Performance
+from agentface.mpeg4.fap_stream import EXPRESSION_FIELDS, VISEME_FIELDS, check_fap, check_fields
 from agentface.parameters import PARAMETERS, check_degrees, indices_of, muscle_names, parameter, parameter_names
 
 if TYPE_CHECKING:
@@ -277,6 +279,64 @@ class SetActionUnit(Request):
     def apply(self, face: Movable) -> None:
         """Tell the action units' channel."""
         face.channels.action_units.set(self.number, self.intensity, self.side, self.fade)
+
+
+@dataclass(frozen=True, slots=True)
+class SetFap(Request):
+    """One low-level FAP of MPEG-4, beside those that are still shown.
+
+    Attributes:
+        number: 3..68.
+        value: in the FAP's unit.
+        fade: seconds.
+    """
+
+    number: int
+    value: float
+    fade: float = STREAM_FADE_S
+
+    def __post_init__(self) -> None:
+        number, value = check_fap(self.number, self.value)
+        self._keep(number=number, value=value, fade=check_duration("fade", self.fade))
+
+    @property
+    def key(self) -> tuple[Hashable, ...]:
+        """Each FAP by itself."""
+        return type(self).__name__, self.number
+
+    def apply(self, face: Movable) -> None:
+        """Tell the FAPs' channel."""
+        face.channels.faps.change(face.model, {self.number: self.value}, self.fade)
+
+
+@dataclass(frozen=True, slots=True)
+class SetFaps(Request):
+    """A whole frame of FAPs: what it does not name is free.
+
+    Attributes:
+        faps: pairs of number, 3..68, and value in the FAP's unit; also a mapping.
+        viseme: FAP 1: two visemes, blend and definition, or None without it.
+        expression: FAP 2: an expression and its intensity twice, ``init_face`` and definition, or None.
+        fade: seconds from the frame before.
+    """
+
+    faps: tuple[tuple[int, float], ...]
+    viseme: tuple[int, ...] | None = None
+    expression: tuple[int, ...] | None = None
+    fade: float = STREAM_FADE_S
+
+    def __post_init__(self) -> None:
+        pairs = self.faps.items() if isinstance(self.faps, Mapping) else self.faps
+        self._keep(
+            faps=tuple(sorted(dict(check_fap(*pair) for pair in pairs).items())),
+            viseme=None if self.viseme is None else check_fields("FAP 1", self.viseme, VISEME_FIELDS),
+            expression=None if self.expression is None else check_fields("FAP 2", self.expression, EXPRESSION_FIELDS),
+            fade=check_duration("fade", self.fade),
+        )
+
+    def apply(self, face: Movable) -> None:
+        """Tell the FAPs' channel."""
+        face.channels.faps.frame(face.model, dict(self.faps), self.viseme, self.expression, self.fade)
 
 
 @dataclass(frozen=True, slots=True)

@@ -37,6 +37,14 @@ if TYPE_CHECKING:
     help="A muscle, 0..1.",
 )
 @action_unit_option
+@click.option(
+    "--fap",
+    "faps",
+    multiple=True,
+    callback=assignments,
+    metavar="N=V",
+    help="A FAP of MPEG-4 by its number 3..68, in its unit.",
+)
 @click.option("--gaze", callback=angles, metavar="YAW,PITCH", help="Degrees to the person's left, and upward.")
 @click.option(
     "--look-at",
@@ -66,6 +74,7 @@ def render(
     muscles: dict[str, float],
     parameters: dict[str, float],
     action_units: list[AskedUnit],
+    faps: dict[str, float],
     gaze: tuple[float, float] | None,
     look_at: tuple[float, float, float] | None,
     jaw: float | None,
@@ -85,7 +94,7 @@ def render(
     from agentface.emotion.state import EmotionState
     from agentface.io.files import check_writable
     from agentface.io.picture import check_picture_name, write_picture
-    from agentface.requests import LookAt, SetActionUnit, SetEmotions, SetGaze, SetMuscle, SetParameter
+    from agentface.requests import LookAt, SetActionUnit, SetEmotions, SetFaps, SetGaze, SetMuscle, SetParameter
 
     if gaze is not None and look_at is not None:
         raise click.UsageError("--gaze and --look-at both say where the eyes look: give one of them")
@@ -94,6 +103,8 @@ def render(
     requests: list[Request] = [SetEmotions(EmotionState.of(emotions), 0.0)]
     requests += [SetMuscle(name, contraction, 0.0) for name, contraction in muscles.items()]
     requests += [SetActionUnit(number, level, side, 0.0) for number, level, side in action_units]  # type: ignore[arg-type]
+    if faps:
+        requests.append(SetFaps(_numbered(faps), fade=0.0))
     if jaw is not None:
         requests.append(SetMuscle("jaw_open", jaw, 0.0))
     if gaze is not None:
@@ -105,3 +116,10 @@ def render(
     for request in requests:
         shown.apply(request)
     write_picture(output, shown.render(size, camera, quality, alpha=alpha))
+
+
+def _numbered(faps: dict[str, float]) -> tuple[tuple[int, float], ...]:
+    for number in faps:
+        if not number.isdecimal():
+            raise click.BadParameter(f"expected N=V with the number of a FAP, got {number!r}; for example 3=400")
+    return tuple((int(number), value) for number, value in faps.items())

@@ -16,7 +16,7 @@ from agentface.motion.channel import Rank, parameters_meant
 from agentface.parameters import Way
 from agentface.resources import rules_file
 
-CHANNELS = ("emotion", "gaze", "head", "action_units", "performance", "blink", "muscles")
+CHANNELS = ("emotion", "gaze", "head", "action_units", "performance", "faps", "blink", "muscles")
 """The face's own channels, each in a file of this folder; a program adds others."""
 
 

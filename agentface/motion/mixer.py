@@ -16,6 +16,7 @@ from agentface.motion.blink import BlinkChannel
 from agentface.motion.channel import Channel, Rank
 from agentface.motion.conflicts import Conflicts, default_conflicts
 from agentface.motion.emotion import EmotionChannel, EmotionRules
+from agentface.motion.faps import FapChannel
 from agentface.motion.muscles import MuscleChannel
 from agentface.motion.playing import PerformanceChannel
 from agentface.motion.turns import TurnChannel
@@ -79,7 +80,8 @@ def _compact(places: list[int]) -> slice | npt.NDArray[np.intp]:
 class Mixer(MutableMapping[str, Channel]):
     """Channels by name; each is blended over those of lower priority, by the ways and priorities of its rank.
 
-    The face's own are ``emotion``, ``gaze``, ``head``, ``action_units``, ``performance``, ``blink`` and ``muscles``,
+    The face's own are ``emotion``, ``gaze``, ``head``, ``action_units``, ``performance``, ``faps``, ``blink`` and
+    ``muscles``,
     also to be had as attributes; they stay. A program adds others, ``mixer["breath"] = channel`` or :meth:`add`, and
     deletes them again; a face shows it from its next step on.
 
@@ -101,6 +103,7 @@ class Mixer(MutableMapping[str, Channel]):
         self.head = self._own("head", TurnChannel("head"))
         self.action_units = self._own("action_units", ActionUnitChannel())
         self.performance = self._own("performance", PerformanceChannel())
+        self.faps = self._own("faps", FapChannel())
         self.blink = self._own("blink", BlinkChannel())
         self.muscles = self._own("muscles", MuscleChannel())
         self._fixed = frozenset(self._layers)

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from agentface.conventions import check_rate
+from agentface.conventions import check_range, check_rate
 from agentface.errors import InvalidValueError
 from agentface.mpeg4.fap_table import FAP_COUNT
 
@@ -94,6 +94,26 @@ class FapStream:
         return head and all(np.array_equal(getattr(self, name), getattr(other, name)) for name in names)
 
     __hash__ = None  # type: ignore[assignment]  # arrays may be large
+
+
+def check_fap(number: Any, value: Any) -> tuple[int, float]:
+    """The number of a low-level FAP and a value, as an int and a float; raises InvalidValueError."""
+    whole = not isinstance(number, bool) and isinstance(number, int | np.integer)
+    if not whole or not EXPRESSION + 2 <= number <= FAP_COUNT:
+        hint = "FAPs 1 and 2 come as fields in a whole frame" if number in (1, 2) else ""
+        raise InvalidValueError("FAP", f"a number in {EXPRESSION + 2}..{FAP_COUNT}", number, hint)
+    return int(number), check_range(f"FAP {number}", value, -LARGEST, LARGEST)
+
+
+def check_fields(name: str, fields: Any, table: dict[str, int]) -> tuple[int, ...]:
+    """The fields of FAP 1 or 2, each in its range; raises InvalidValueError."""
+    got = tuple(fields)
+    if len(got) != len(table):
+        raise InvalidValueError(name, f"{len(table)} values: {', '.join(table)}", len(got))
+    for value, (field, largest) in zip(got, table.items(), strict=True):
+        if isinstance(value, bool) or value not in range(largest + 1):
+            raise InvalidValueError(f"{name} {field}", f"a whole number in 0..{largest}", value)
+    return tuple(int(value) for value in got)
 
 
 def _whole(name: str, array: Any, shape: tuple[int, int]) -> Any:

@@ -9,6 +9,8 @@ from typing import Any, TypeAlias
 from agentface.emotion.state import EMOTIONS, NEUTRAL, EmotionState, canonical_or_neutral
 from agentface.errors import AgentFaceError, InvalidValueError, UnknownNameError
 from agentface.io.osc.pattern import is_pattern, matches
+from agentface.mpeg4.fap_stream import EXPRESSION, EXPRESSION_FIELDS, VISEME, VISEME_FIELDS
+from agentface.mpeg4.fap_table import FAP_COUNT
 from agentface.requests import (
     Blink,
     LookAt,
@@ -17,6 +19,8 @@ from agentface.requests import (
     SetActionUnit,
     SetEmotion,
     SetEmotions,
+    SetFap,
+    SetFaps,
     SetGaze,
     SetHead,
     SetMuscle,
@@ -134,6 +138,31 @@ def _au(arguments: Sequence[Any]) -> Request:
     return SetActionUnit(*arguments)
 
 
+def _fap(arguments: Sequence[Any]) -> Request:
+    _count(arguments, "number value", 2, 2)
+    return SetFap(*arguments)
+
+
+def _faps(arguments: Sequence[Any]) -> Request:
+    form = f"{FAP_COUNT} mask integers, and a value for each 1 (4 for FAP 1, 6 for FAP 2)"
+    mask = arguments[:FAP_COUNT]
+    if len(mask) < FAP_COUNT or any(isinstance(bit, bool) or bit not in (0, 1) for bit in mask):
+        raise InvalidValueError("mask", form, len(arguments), f"send {form}")
+    fields = {VISEME: len(VISEME_FIELDS), EXPRESSION: len(EXPRESSION_FIELDS)}
+    widths = [fields.get(column, 1) for column in range(FAP_COUNT)]
+    values = list(arguments[FAP_COUNT:])
+    needed = sum(width for width, bit in zip(widths, mask, strict=True) if bit)
+    if len(values) != needed:
+        raise InvalidValueError("values", f"{needed}, as the mask says", len(values), f"send {form}")
+    parts: dict[int, list[Any]] = {}
+    for column, (width, bit) in enumerate(zip(widths, mask, strict=True)):
+        if bit:
+            parts[column], values = values[:width], values[width:]
+    viseme, expression = parts.pop(VISEME, None), parts.pop(EXPRESSION, None)
+    low = tuple((column + 1, part[0]) for column, part in parts.items())
+    return SetFaps(low, viseme, expression)  # type: ignore[arg-type]  # makes tuples of them
+
+
 def _gaze(arguments: Sequence[Any]) -> Request:
     _count(arguments, "yaw_deg pitch_deg [duration_s]", 2, 3)
     return SetGaze(*arguments)
@@ -184,6 +213,8 @@ _READERS: dict[str, Reader] = {
     "muscle": _muscle,
     "parameter": _parameter,
     "au": _au,
+    "fap": _fap,
+    "faps": _faps,
     "gaze": _gaze,
     "look_at": _look_at,
     "head": _head,
