@@ -24,6 +24,8 @@ from agentface.requests import (
     SetActionUnit,
     SetEmotion,
     SetEmotions,
+    SetFap,
+    SetFaps,
     SetGaze,
     SetHead,
     SetMuscle,
@@ -43,6 +45,8 @@ ANY_REQUEST = st.one_of(
     st.builds(SetMuscle, st.sampled_from(MUSCLES), st.none() | FRACTIONS, FADES),
     st.builds(SetParameter, st.sampled_from(NAMES), st.none() | FRACTIONS.map(lambda v: 0.1 * v), FADES),
     st.builds(SetActionUnit, st.sampled_from((1, 12, 30, 51)), FRACTIONS, st.sampled_from((None, "left")), FADES),
+    st.builds(SetFap, st.integers(3, 68), st.integers(-100, 100), FADES),
+    st.builds(SetFaps, st.dictionaries(st.integers(3, 68), st.integers(-100, 100), max_size=3)),
     st.builds(SetGaze, st.floats(-50, 50), st.floats(-40, 40), FADES),
     st.builds(LookAt, st.floats(-0.2, 0.2), st.floats(-0.2, 0.2), st.floats(0.5, 2), FADES),
     st.builds(SetHead, st.floats(-80, 80), st.floats(-60, 60), st.floats(-50, 50), FADES),
@@ -71,7 +75,7 @@ def test_every_kind_is_tried_here():
     made = {name for name, kind in vars(requests).items() if isinstance(kind, type) and issubclass(kind, Request)}
     assert made - {"Request"} == {
         "SetEmotion", "SetEmotions", "Neutral", "SetMuscle", "SetParameter", "SetActionUnit", "SetGaze", "LookAt",
-        "SetHead", "Blink", "Play",
+        "SetHead", "Blink", "Play", "SetFap", "SetFaps",
     }  # fmt: skip
 
 
@@ -107,6 +111,7 @@ def test_the_methods_of_a_face_make_requests(face):
     face.set_muscle("risorius", None, fade=0)
     face.set_parameter("head_roll_deg", 10)
     face.set_action_unit(12, "C", side="left")
+    face.set_faps({3: 10}, viseme=[1, 0, 63, 0])
     face.set_jaw(0.3)
     face.set_gaze(10, -5)
     face.look_at(np.array([0.1, 0.0, 0.6]))
@@ -121,6 +126,7 @@ def test_the_methods_of_a_face_make_requests(face):
         SetMuscle("risorius", None, 0.0),
         SetParameter("head_roll", math.radians(10)),
         SetActionUnit(12, 0.5, "l"),
+        SetFaps(((3, 10.0),), (1, 0, 63, 0)),
         SetMuscle("jaw_open", 0.3),
         SetGaze(10.0, -5.0),
         LookAt(0.1, 0.0, 0.6),

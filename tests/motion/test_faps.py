@@ -29,7 +29,7 @@ def moved(face):
 
 def test_a_fap_is_shown_and_moves_what_it_determines(face):
     face.apply(SetFap(3, 500, fade=0))
-    assert measured(face)[2] == pytest.approx(500, abs=15)
+    assert measured(face)[2] == pytest.approx(500, abs=25)
     assert moved(face) == {"jaw_open"}
     assert face.status()["drivers"] == {"faps": ["jaw_open"]}
 
@@ -97,7 +97,7 @@ def test_another_value_is_refused(value):
     [((1, 2, 3), None), ((15, 0, 0, 0), None), (None, (7, 0, 0, 0, 0, 0)), ((1, 0, 64, 0), None)],
 )
 def test_other_fields_are_refused(viseme, expression):
-    with pytest.raises(InvalidValueError, match="FAP [12]"):
+    with pytest.raises(InvalidValueError, match=r"FAP [12]"):
         SetFaps({}, viseme, expression)
 
 
