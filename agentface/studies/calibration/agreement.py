@@ -6,11 +6,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from agentface.conventions import Floats
+from agentface.conventions import SIDES, Floats
 from agentface.deform.protocol import DEFAULT_DEFORMER, Deformer, make_deformer
 from agentface.facs.action_units import ActionUnit
+from agentface.head.arkit import sided
 from agentface.head.model import HeadModel
 from agentface.head.regions import REGIONS
+from agentface.parameters import FacePose
 
 PART_OF_PEAK = 0.25
 AS_FAR = 0.99
@@ -70,6 +72,26 @@ def measure(model: HeadModel, units: dict[int, ActionUnit], deformer: Deformer |
             continue
         moved = deformer.at(unit.pose).vertices - rest
         result[number] = agreement(model, moved, unit.shape(model), fitted=unit.fitted)
+    return result
+
+
+def measure_shapes(model: HeadModel, deformer: Deformer | None = None) -> dict[str, Agreement]:
+    """The agreement of what ``morphs.yaml`` makes of each artists' shape with that shape, both sides and lips together.
+
+    Its rest is the shape itself; what is measured is what lids, jaw and contact leave of it.
+    """
+    deformer = make_deformer(DEFAULT_DEFORMER, model) if deformer is None else deformer
+    made: dict[str, dict[str, float]] = {}
+    for name, row in model.morphs_file.morphs.items():
+        for shape in row.high.shapes:
+            made.setdefault(shape, {})[name] = 1.0
+    result = {}
+    for shape, parameters in made.items():
+        names = [whole for whole in (shape, *(sided(shape, side) for side in SIDES)) if whole in model.shapes]
+        if names:
+            artists = sum((model.shapes[name].dense(len(model.vertices)) for name in names), 0 * model.vertices)
+            moved = deformer.at(FacePose().replace(parameters)).vertices - model.vertices
+            result[shape] = agreement(model, moved, artists, fitted=False)
     return result
 
 

@@ -12,7 +12,7 @@ from agentface.facs.action_units import load_action_units
 from agentface.head.model import HeadModel, load_model
 from agentface.head.muscles import MusclesFile, read_muscles
 from agentface.resources import data_folder
-from agentface.studies.calibration.agreement import Agreement, measure
+from agentface.studies.calibration.agreement import Agreement, measure, measure_shapes
 from agentface.studies.calibration.fit import Fitter, Progress, groups
 
 _TITLE = """\
@@ -46,7 +46,7 @@ def muscles_yaml(file: MusclesFile) -> str:
 
 
 def table(models: list[HeadModel], deformer_name: str = DEFAULT_DEFORMER) -> str:
-    """The agreement of every action unit on every face, as a Markdown table."""
+    """The agreement of every action unit and of every single artists' shape on every face, as a Markdown table."""
     units = load_action_units()
     lines = [
         "| face | AU | name | mean cosine | covered | peak ratio | artists' peak, mm | region | artists' region |",
@@ -59,6 +59,14 @@ def table(models: list[HeadModel], deformer_name: str = DEFAULT_DEFORMER) -> str
                 f"| {model.name} | {number} | {units[number].name} | {row.cosine:.2f} | {row.covered:.2f} "
                 f"| {row.peak_ratio:.2f} | {row.peak_mm:.1f} | {row.region} | {row.artists_region} |"
             )
+        shapes = measure_shapes(model, make_deformer(deformer_name, model))
+        lines += [
+            f"| {model.name} | | {name} | {row.cosine:.2f} | {row.covered:.2f} | {row.peak_ratio:.2f} "
+            f"| {row.peak_mm:.1f} | {row.region} | {row.artists_region} |"
+            for name, row in shapes.items()
+        ]
+        mean = float(np.mean([row.cosine for row in shapes.values()])) if shapes else float("nan")
+        lines.append(f"| {model.name} | all | mean of single shapes | {mean:.2f} | | | | | |")
         for title, fitted in (("vector muscles", True), ("lids, lips, jaw", False)):
             lines.append(f"| {model.name} | all | mean of {title} | {mean_cosine(rows, fitted=fitted):.2f} | | | | | |")
     return "\n".join(lines) + "\n"

@@ -11,7 +11,7 @@ from agentface.deform.protocol import make_deformer
 from agentface.errors import DataError, OutputError
 from agentface.facs.action_units import load_action_units
 from agentface.resources import face_names
-from agentface.studies.calibration.agreement import Agreement, agreement, measure
+from agentface.studies.calibration.agreement import Agreement, agreement, measure, measure_shapes
 from agentface.studies.calibration.calibrate import table
 from agentface.studies.calibration.limits import END, begin_of, between_marks, limits_of, missed, with_table
 from tests.heads import head_model
@@ -47,6 +47,14 @@ def test_the_tissue_of_every_face_agrees_with_its_artists(face):
         assert row.cosine >= 0.75, number
         assert 0.7 <= row.peak_ratio <= 1.4, number
     assert missed(rows, limits_of("tissue")) == []
+
+
+@pytest.mark.parametrize("face", face_names())
+def test_single_shapes_agree_with_the_artists(face):
+    rows = measure_shapes(head_model(face))
+    assert {"jawForward", "jawLeft", "mouthLeft", "cheekPuff", "mouthFunnel", "mouthRollUpper"} <= rows.keys()
+    assert np.mean([row.cosine for row in rows.values()]) >= 0.8
+    assert min(row.cosine for row in rows.values()) >= 0.6
 
 
 def test_the_table_in_the_documents_is_what_the_command_would_write():
