@@ -18,7 +18,7 @@ from tests.heads import head_model
 
 DOCUMENT = Path(__file__).parents[3] / "docs" / "calibration.md"
 FITTED = {1, 2, 4, 6, 9, 10, 12, 15, 16, 17, 20}
-OTHERS = {5, 7, 18, 22, 23, 24, 25, 26, 27, 28, 43, 45}
+OTHERS = {5, 7, 14, 18, 22, 23, 24, 25, 26, 27, 28, 29, 30, 34, 43, 45}
 """Action units of lids, lips and jaw."""
 
 
