@@ -20,12 +20,13 @@ from agentface.conventions import SIDES, Floats, check_range
 from agentface.errors import InvalidValueError, UnknownNameError
 from agentface.named_array import NamedArray
 
-Kind = Literal["vector", "pseudo", "morph", "jaw", "gaze", "head"]
-"""What moves: a vector muscle, a muscle of another form, skin by a shape (``morphs.yaml``), the jaw, eyes, the head."""
+Kind = Literal["vector", "pseudo", "morph", "jaw", "tongue", "eye", "gaze", "head"]
+"""What moves: a vector muscle, a muscle of another form, skin by a shape (``morphs.yaml``), jaw, tongue, an eyeball or
+its pupil, the gaze, the head."""
 Unit = Literal["contraction", "opening", "share", "rad"]
 """Contractions and openings are 0..1, at 0 where the face is at rest. A share is that of a whole movement, -1 of the
 opposite one. Angles have a sign, too."""
-Group = Literal["brow", "eyes", "nose and cheek", "mouth", "jaw", "ears", "gaze", "head"]
+Group = Literal["brow", "eyes", "nose and cheek", "mouth", "jaw", "tongue", "ears", "gaze", "head"]
 GROUPS: tuple[Group, ...] = get_args(Group)
 """From the top of the face down, and then what turns."""
 Way = Literal["replace", "max", "add", "scale"]
@@ -64,6 +65,10 @@ def _share(
     group: Group, description: str, *, paired: bool = True, kind: Kind = "morph", sideways: bool = False
 ) -> _Row:
     return _Row(kind, group, description, paired, "share", -1.0, way="add", sideways=sideways)
+
+
+def _tongue(description: str, *, low: float = -1.0, sideways: bool = False) -> _Row:
+    return _Row("tongue", "tongue", description, False, "share", low, way="add", sideways=sideways)
 
 
 def _angle(
@@ -131,6 +136,13 @@ _TABLE: dict[str, _Row] = {
     "jaw_shift": _share("jaw", "the jaw goes to the person's left (AU 30)", paired=False, kind="jaw", sideways=True),
     "ear_raise": _share("ears", "auricularis superior: raises the ear, or lowers it"),
     "ear_back": _share("ears", "auricularis posterior: draws the ear back, or forward"),
+    "tongue_out": _tongue("the tongue comes out, as far as teeth and lips let it", low=0.0),
+    "tongue_raise": _tongue("the back of the tongue goes up, or down"),
+    "tongue_tip_raise": _tongue("the tip of the tongue goes up, or down"),
+    "tongue_tip_shift": _tongue("the tip of the tongue goes to the person's left", sideways=True),
+    "tongue_roll": _tongue("the edges of the tongue roll up", low=0.0),
+    "pupil_dilation": _share("eyes", "the pupil grows to twice its diameter, or shrinks to half of it", kind="eye"),
+    "eye_thrust": _share("eyes", "the eyeball comes out of its socket, or sinks into it", kind="eye"),
 }
 
 

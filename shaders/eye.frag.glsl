@@ -14,8 +14,10 @@ uniform vec3 lower_lid;
 uniform vec2 corners;       // x of the canthi in radii, the smaller first
 uniform vec3 iris_inner, iris_outer;
 uniform float iris_radius, pupil_radius;   // in radii; in radii of the iris
+uniform float dilation;     // the pupil's diameter over that at rest
 uniform vec3 sclera;
 
+const float WIDEST_PUPIL = 0.80;   // in radii of the iris
 const vec3 CARUNCLE = vec3(0.50, 0.21, 0.18);
 
 void main() {
@@ -29,10 +31,11 @@ void main() {
     float on_iris = smoothstep(iris_radius + 0.02, iris_radius - 0.03, edge) * step(0.0, local.z);
     vec2 spoke = at.xy / max(length(at.xy), 1e-4);
     float fibres = 0.45 * noise(vec3(spoke * 2.3, 0.25 * ri)).r + 0.55 * noise(vec3(spoke * 5.3, 0.5 * ri)).g;
-    float collar = exp(-pow((ri - pupil_radius - 0.16) / 0.13, 2.0));   // the collarette, lighter
+    float pupil = min(pupil_radius * dilation, WIDEST_PUPIL);
+    float collar = exp(-pow((ri - pupil - 0.16) / 0.13, 2.0));   // the collarette, lighter
     vec3 iris = mix(iris_outer, iris_inner, smoothstep(0.28, 0.70, fibres + 0.10 * collar)) * mix(1.15, 0.70, smoothstep(0.42, 0.95, ri));
     iris *= (0.85 + 0.30 * collar) * (1.0 - 0.88 * smoothstep(0.72, 1.02, ri));
-    iris *= smoothstep(pupil_radius, pupil_radius + 0.06, ri);
+    iris *= smoothstep(pupil, pupil + 0.06, ri);
     float side = length(local.xy);
     float veins = smoothstep(0.60, 0.72, noise(vec3(local.xy * vec2(0.35, 1.4), 0.3)).g) * smoothstep(0.50, 0.85, side);
     vec3 white = mix(sclera, sclera * vec3(0.93, 0.66, 0.59), 0.6 * smoothstep(0.45, 0.95, side) + 0.18 * veins);

@@ -34,11 +34,12 @@ void main() {
     vec3 tooth = enamel(gummed);
     float enamelled = matter.x * (1.0 - gummed);
     n = normalize(n + (0.03 * enamelled + 0.14 * (1.0 - enamelled) * (1.0 - tongue) + 0.34 * tongue) * (grain.bag - 0.5));
-    vec3 albedo = matter.x * tooth + matter.y * GUM + tongue * TONGUE * (1.0 - 0.12 * groove);
+    vec3 albedo = matter.x * tooth + matter.y * GUM + tongue * TONGUE * (1.0 - 0.12 * groove) * mix(0.72, 1.0, smoothstep(-0.006, 0.0, reach.z));
     albedo *= mix(0.88 + 0.24 * grain.r, 0.98 + 0.04 * grain.r, enamelled);
     float rough = mix(0.32, 0.24, enamelled), sky_part = min(reach.x * mix(2.0 - 0.7 * tongue, 1.55, enamelled), 1.0), key_part = reach.y;   // teeth light each other
     // what the walls send back is red and dies away behind
-    vec3 walls = vec3(0.60, 0.27, 0.20) * sky_part * exp(-reach.z / 0.016);
+    float inside = smoothstep(-0.006, 0.0, reach.z);
+    vec3 walls = vec3(0.60, 0.27, 0.20) * sky_part * inside * exp(-reach.z / 0.016);
     vec3 light = hemisphere(n) * sky_part + walls, gloss = vec3(0.0);
     float n_v = max(dot(n, view), 0.02);
     for (int i = 0; i < 2; i++) {
@@ -49,5 +50,5 @@ void main() {
     }
     gloss += sky_part * hemisphere(reflect(-view, n)) * fresnel(0.045, n_v) * 0.8;
     float back = 0.07 + exp(-max(reach.z - 0.014, 0.0) / 0.016);   // it is dark in the throat
-    colour = vec4(finish((1.0 - shaded) * (albedo * light * mix(back, 1.0, 0.25 * enamelled) + gloss * back)), 1.0);
+    colour = vec4(finish((1.0 - shaded * inside) * (albedo * light * mix(back, 1.0, 0.25 * enamelled) + gloss * back)), 1.0);
 }

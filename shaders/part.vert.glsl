@@ -2,6 +2,7 @@
 #include "frame.glsl"
 #include "mouth.glsl"
 in vec3 place;
+in vec3 rest;          // where it lies with the tongue at rest
 in vec3 facing;
 in vec4 material;      // tooth, gum, tongue
 in vec2 detail;        // on a tooth: across and up
@@ -16,10 +17,11 @@ void main() {
     vec4 placed = moved * vec4(place, 1.0);
     position = placed.xyz;
     normal = mat3(moved) * facing;
-    rest_position = place;
+    rest_position = rest;
     matter = material;
     within = detail;
     vec3 at = transpose(mat3(head)) * (placed.xyz - head[3].xyz);
-    reach = vec3(mouth_reach(at), mouth_depth(at));
+    float depth = mouth_depth(at);
+    reach = vec3(mix(mouth_reach(at), vec2(1.0), smoothstep(0.0, 0.006, -depth)), depth);   // before the lips it is light
     gl_Position = view_projection * placed;
 }

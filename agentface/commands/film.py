@@ -57,7 +57,7 @@ class Shot:
             return renderer.render(geometry, self.size, self.camera, self.quality, alpha=self._transparent)
 
         # the first picture takes a driver longer than those that follow
-        draw(FaceGeometry.at_rest(model.vertices, model.normals, len(model.trains)))
+        draw(FaceGeometry.at_rest(model))
         return draw
 
     @property

@@ -92,7 +92,7 @@ class Crowd:
             self._pool.shutdown()
 
     def _new_geometry(self, count: int) -> FaceGeometry:
-        return FaceGeometry.at_rest(self.model.vertices, self.model.normals, len(self.model.trains), batch=(count,))
+        return FaceGeometry.at_rest(self.model, batch=(count,))
 
 
 def _work(worker: Frames, chunks: Iterator[slice], poses: Floats, faces: FaceArrays) -> None:

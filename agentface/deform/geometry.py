@@ -8,6 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from agentface.conventions import SIDES, Floats
+from agentface.head.model import HeadModel
 
 
 class FaceArrays(NamedTuple):
@@ -21,6 +22,9 @@ class FaceArrays(NamedTuple):
     head: Floats
     smooth_normals: Floats
     wrinkle_levels: Floats
+    tongue: Floats
+    pupils: Floats
+    eye_thrust: Floats
 
 
 @dataclass(slots=True, eq=False)
@@ -36,10 +40,13 @@ class FaceGeometry:
         normals: ``(..., V, 3)`` float32, unit normals of the skin.
         wrinkles: ``(..., V)`` float32, height of the wrinkles in metres.
         eye_rotations: ``(..., 2, 3, 3)`` float32, left eye then right eye, about their centres.
-        jaw: ``(..., 4, 4)`` float32, moves lower teeth and tongue from rest.
+        jaw: ``(..., 4, 4)`` float32, moves lower teeth and tongue.
         head: ``(..., 4, 4)`` float32, turns the whole head; the other arrays do not contain it.
         smooth_normals: ``(..., V, 3)`` float32, unit normals before the wrinkles rise: pictures add finer ones.
         wrinkle_levels: ``(..., K)`` float32 0..1, how far each train of ``HeadModel.trains`` has risen.
+        tongue: ``(..., T, 3)`` float32 m, the vertices of the tongue before ``jaw`` moves them.
+        pupils: ``(..., 2)`` float32, the diameters of the left and the right pupil over those at rest.
+        eye_thrust: ``(..., 2)`` float32 m, how far each eyeball, with its centre, stands forward of where it rests.
     """
 
     vertices: Floats
@@ -50,26 +57,33 @@ class FaceGeometry:
     head: Floats
     smooth_normals: Floats
     wrinkle_levels: Floats
+    tongue: Floats
+    pupils: Floats
+    eye_thrust: Floats
 
     @classmethod
-    def at_rest(cls, vertices: Floats, normals: Floats, trains: int = 0, batch: tuple[int, ...] = ()) -> FaceGeometry:
-        """The neutral face, ``vertices (V, 3)`` and K ``trains``, ``batch`` times, in new arrays."""
+    def at_rest(cls, model: HeadModel, *, normals: Floats | None = None, batch: tuple[int, ...] = ()) -> FaceGeometry:
+        """The neutral face, ``batch`` times, in new arrays; with its own normals, where none ``(V, 3)`` are given."""
 
         def repeated(row: Floats) -> Floats:
             rows = np.empty((*batch, *row.shape), np.float32)
             rows[...] = row
             return rows
 
-        turn = repeated(np.eye(4, dtype=np.float32))
+        count, facing = len(model.vertices), model.normals if normals is None else normals
+        turn = np.eye(4, dtype=np.float32)
         return cls(
-            repeated(vertices),
-            repeated(normals),
-            repeated(np.zeros(len(vertices), np.float32)),
-            repeated(np.stack([np.eye(3, dtype=np.float32)] * len(SIDES))),
-            turn,
-            turn.copy(),
-            repeated(normals),
-            repeated(np.zeros(trains, np.float32)),
+            vertices=repeated(model.vertices),
+            normals=repeated(facing),
+            wrinkles=repeated(np.zeros(count, np.float32)),
+            eye_rotations=repeated(np.stack([np.eye(3, dtype=np.float32)] * len(SIDES))),
+            jaw=repeated(turn),
+            head=repeated(turn),
+            smooth_normals=repeated(facing),
+            wrinkle_levels=repeated(np.zeros(len(model.trains), np.float32)),
+            tongue=repeated(model.parts["tongue"].attributes["POSITION"]),
+            pupils=repeated(np.ones(len(SIDES), np.float32)),
+            eye_thrust=repeated(np.zeros(len(SIDES), np.float32)),
         )
 
     @property

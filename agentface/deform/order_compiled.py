@@ -85,6 +85,9 @@ def frames(tables: FaceTables, scratch: Scratch, first: int, last: int, poses: F
             faces.head[index],
             faces.smooth_normals[index],
             faces.wrinkle_levels[index],
+            faces.tongue[index],
+            faces.pupils[index],
+            faces.eye_thrust[index],
         )
         moved, shown = scratch.points.ravel(), face.vertices.ravel()
         for place in range(shown.shape[0]):

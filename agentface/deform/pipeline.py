@@ -111,4 +111,4 @@ class GeometricDeformer:
         self._finish(first, last, self._tables.finish, pose.array, face)
 
     def _new_rows(self) -> FaceGeometry:
-        return FaceGeometry.at_rest(self._model.vertices, self._model.normals, len(self._model.trains), batch=(1,))
+        return FaceGeometry.at_rest(self._model, batch=(1,))

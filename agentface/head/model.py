@@ -17,6 +17,7 @@ from agentface.config import Table, load
 from agentface.conventions import SIDES, Floats, Indices, check_fraction
 from agentface.errors import DataError, Fault, InvalidValueError
 from agentface.head import asymmetry as own
+from agentface.head.dental_wall import between_the_teeth
 from agentface.head.feature_points import FeaturePointRow, check_parts
 from agentface.head.landmarks import Landmarks, place_landmarks, read_landmarks
 from agentface.head.morphs import MorphsFile, MorphSkin, PlacedMorph, place_morphs, read_morphs
@@ -303,7 +304,7 @@ def _read(folder: Path, muscles: MusclesFile | None, asymmetry: float) -> HeadMo
         jaw_weights=skin.attributes["_JAW"].astype(np.float32),
         mirror=skin.attributes["_MIRROR"].astype(np.int32),
         shapes=shapes,
-        parts={name: _moved(meshes[name], part_moves[name]) for name in PARTS},
+        parts={name: _moved(part, part_moves[name]) for name, part in _parts(meshes).items()},
         regions=tables["regions.yaml"],
         landmarks=place_landmarks(tables["feature_points.yaml"], vertices, pupils),
         feature_points=tables["feature_points.yaml"].feature_points,
@@ -323,6 +324,11 @@ def _read(folder: Path, muscles: MusclesFile | None, asymmetry: float) -> HeadMo
 
 def _eye_centre(eyes: EyesFile, side: str) -> Floats:
     return np.array(eyes.centre, np.float32) * np.array([1 if side == SIDES[0] else -1, 1, 1], np.float32)
+
+
+def _parts(meshes: dict[str, MeshArrays]) -> dict[str, MeshArrays]:
+    rows = {name: meshes[name] for name in ("teeth_upper", "teeth_lower")}
+    return {name: between_the_teeth(meshes[name], rows) if name == "tongue" else meshes[name] for name in PARTS}
 
 
 def _moved(part: MeshArrays, move: Floats) -> MeshArrays:

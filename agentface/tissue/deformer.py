@@ -130,7 +130,7 @@ class TissueDeformer:
         self._finish(first, last, self._tables.finish, values, geometry.arrays())
 
     def _new_geometry(self) -> FaceGeometry:
-        return FaceGeometry.at_rest(self._model.vertices, self._model.normals, len(self._model.trains))
+        return FaceGeometry.at_rest(self._model)
 
 
 SemiImplicitTissue = partial(TissueDeformer, solver="semi_implicit")

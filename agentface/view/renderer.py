@@ -317,7 +317,7 @@ class Renderer:
 
     def _lit_at_rest(self, normals: Floats) -> Floats:
         model, lights = self.model, self.look.lights
-        geometry = FaceGeometry.at_rest(model.vertices, normals, len(model.trains))
+        geometry = FaceGeometry.at_rest(model, normals=normals)
         self._frame.write(pack_frame(named_view(model, "front"), (1, 1), geometry.head, lights))
         self._frame.bind_to_uniform_block(FRAME_BINDING)
         self._fields.update(geometry)

@@ -354,7 +354,7 @@ def test_a_worn_picture_shows_where_its_coordinates_say(tmp_path, quality):
     half = np.zeros((64, 64, 4), np.uint8)
     half[:, :32] = (20, 40, 200, 255)  # the person's right
     Image.fromarray(half).save(tmp_path / "half.png")
-    geometry = FaceGeometry.at_rest(model.vertices, model.normals, len(model.trains))
+    geometry = FaceGeometry.at_rest(model)
     pictures = []
     for look in (load_look(model), read_look(look_with(tmp_path / "worn", tmp_path / "half.png"))):
         renderer = Renderer(model, look)

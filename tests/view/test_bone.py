@@ -26,7 +26,7 @@ def renderer():
 
 @pytest.fixture
 def face():
-    return FaceGeometry.at_rest(MODEL.vertices, MODEL.normals, len(MODEL.trains))
+    return FaceGeometry.at_rest(MODEL)
 
 
 def bone(deep_mm=8.0, tint=0.0):

@@ -43,7 +43,7 @@ def program(text: str, *before: str, **environment: str) -> str:
 
 
 def at_rest(model):
-    return FaceGeometry.at_rest(model.vertices, model.normals, len(model.trains))
+    return FaceGeometry.at_rest(model)
 
 
 @pytest.fixture

@@ -25,7 +25,7 @@ def renderer(request):
 
 
 def at_rest(model, **levels):
-    geometry = FaceGeometry.at_rest(model.vertices, vertex_normals(model.vertices, model.triangles), len(model.trains))
+    geometry = FaceGeometry.at_rest(model)
     for i, placed in enumerate(model.trains):
         geometry.wrinkle_levels[i] = levels.get(placed.name, levels.get(placed.name[:-2], 0.0))
     return geometry

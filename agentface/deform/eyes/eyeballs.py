@@ -13,11 +13,15 @@ from typing import NamedTuple
 
 import numpy as np
 
-from agentface.conventions import SIDES, Floats, check_finite
+from agentface.conventions import SIDES, Floats, Indices, check_finite
 from agentface.errors import InvalidValueError
 from agentface.head.model import HeadModel
 from agentface.parameters import indices_of
 
+FARTHEST = np.float32(0.002)
+"""m, the whole thrust of an eye: healthy eyes differ by as much from the mean (exophthalmometry: 16 mm, s.d. 2 mm)."""
+WIDEST = np.float32(2.0)
+"""By how much a pupil grows or shrinks: from a third of the iris (MPEG-4's neutral face) to 2 and 8 mm of its 12 mm."""
 _AXES = "xyz"
 _NEAREST = 1e-3  # m in front of the eyes' centres
 
@@ -32,13 +36,18 @@ class EyesTables(NamedTuple):
     """Half the width of the eye hole."""
     pitch_limit: float
     """Half its height."""
+    thrust: Indices
+    """``(2,)``: where the thrusts stand in a pose."""
+    dilation: Indices
+    """``(2,)``: the dilations of the pupils."""
 
 
 def prepare(model: HeadModel) -> EyesTables:
     """The tables of a face."""
     yaw, pitch, vergence = (indices_of(name)[0] for name in ("gaze_yaw", "gaze_pitch", "gaze_vergence"))
     limits = math.radians(model.eyes.yaw_limit_deg), math.radians(model.eyes.pitch_limit_deg)
-    return EyesTables(yaw, pitch, vergence, *limits)
+    others = [np.array(indices_of(name), np.int32) for name in ("eye_thrust", "pupil_dilation")]
+    return EyesTables(yaw, pitch, vergence, *limits, *others)
 
 
 def eye_angles(tables: EyesTables, values: Floats, side: int) -> tuple[float, float]:
@@ -59,6 +68,18 @@ def apply(tables: EyesTables, values: Floats, rotations: Floats) -> None:
         yaw, pitch = eye_angles(tables, values, side)
         cy, sy, cp, sp = math.cos(yaw), math.sin(yaw), math.cos(pitch), math.sin(pitch)
         rotations[side] = [[cy, 0.0, sy], [-sp * sy, cp, sp * cy], [-cp * sy, -sp, cp * cy]]
+
+
+def thrust(tables: EyesTables, values: Floats, out: Floats) -> None:
+    """Write how far the eyeballs stand forward of where they rest into ``out (2,)`` m."""
+    for side in range(len(SIDES)):
+        out[side] = FARTHEST * values[tables.thrust[side]]
+
+
+def dilate(tables: EyesTables, values: Floats, out: Floats) -> None:
+    """Write the diameters of the pupils over those at rest into ``out (2,)``: equal steps are equal factors."""
+    for side in range(len(SIDES)):
+        out[side] = WIDEST ** values[tables.dilation[side]]
 
 
 def toward(model: HeadModel, point: Sequence[float]) -> tuple[float, float, float]:

@@ -5,8 +5,13 @@ from __future__ import annotations
 import math
 
 from agentface.conventions import Floats
+from agentface.deform.eyes import eyeballs
 from agentface.deform.eyes.eyeballs import EyesTables
 from agentface.kernel import kernel
+
+
+thrust = kernel(error_model="numpy")(eyeballs.thrust)
+dilate = kernel(error_model="numpy")(eyeballs.dilate)
 
 
 @kernel(error_model="numpy")

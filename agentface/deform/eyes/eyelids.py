@@ -8,7 +8,8 @@ Round an eye's centre, with theta the turn of a point about the lateral axis and
 levator, ``g`` the eye's pitch, ``n`` the tightening of the lower lid, ``i`` how far the inner brow rises more than the
 outer one. A, B, W, G, N, I, D, E are fields over the skin (:mod:`agentface.deform.eyes.lid_fields`): the
 edges interpolate linearly between open and closed, where both lie on one curve; the skin follows with a fade, down
-onto the sphere that the closed edge lies on. No point goes below a sphere slightly larger than the eye. Before that
+onto the sphere that the closed edge lies on. Where an eye stands forward of its place, the lids go along as far as
+they are held. No point goes below a sphere slightly larger than the eye. Before that
 the skin goes the way ``s (2 - s)`` of the sphincter: like a squint, most of it with little force.
 """
 
@@ -124,7 +125,10 @@ def apply(tables: EyelidsTables, values: Floats, points: Floats) -> None:
         y, z = at[:, 1] - centre[1], at[:, 2] - centre[2]
         at[:, 1] += cosine * y + sine * z
         at[:, 2] += cosine * z - sine * y
+        ahead = eyeballs.FARTHEST * values[tables.eyes.thrust[side]]
+        at[:, 2] += ahead * lid.hold
         arm = at - centre
+        arm[:, 2] -= ahead
         distance = np.sqrt((arm * arm).sum(1))
         at += np.maximum(lid.floor / np.maximum(distance, _NEAR) - _ONE, _ZERO)[:, None] * arm
         points[where] = at

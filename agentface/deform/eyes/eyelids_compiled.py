@@ -6,6 +6,7 @@ import numpy as np
 
 from agentface.conventions import Floats, Indices
 from agentface.deform.eyes import eyelids
+from agentface.deform.eyes.eyeballs import FARTHEST
 from agentface.deform.eyes.eyeballs_compiled import eye_angles
 from agentface.deform.eyes.eyelids import (
     ACROSS,
@@ -54,7 +55,8 @@ def apply(tables: EyelidsTables, values: Floats, points: Floats) -> None:
         way = s * (_TWO - s)
         alone = max(values[tables.inner_brow[side]] - values[tables.outer_brow[side]], _ZERO)
         turns = (_ONE - c) * o, (_ONE - c) * pitch, (_ONE - c) * values[tables.tightening[side]], (_ONE - c) * alone
-        levels = c, min(_ONE, _TWO * s), *turns, way, _F(1 - 2 * side)
+        ahead = FARTHEST * values[tables.eyes.thrust[side]]
+        levels = c, min(_ONE, _TWO * s), *turns, way, _F(1 - 2 * side), ahead
         _move(tables.vertex[side], tables.rest[side], tables.centre[side], tables.fields, levels, points)
 
 
@@ -62,7 +64,7 @@ def apply(tables: EyelidsTables, values: Floats, points: Floats) -> None:
 def _move(
     vertex: Indices, rest: Floats, centre: Floats, fields: Floats, levels: tuple[np.float32, ...], points: Floats
 ) -> None:
-    c, raised, o, pitch, tight, alone, way, side = levels
+    c, raised, o, pitch, tight, alone, way, side, ahead = levels
     cx, cy, cz = splat(centre[0]), splat(centre[1]), splat(centre[2])
     lanes = np.empty((3, LANES), dtype=np.float32)
     for block in range(vertex.shape[0]):
@@ -86,7 +88,8 @@ def _move(
         sine = scale * angle * (_ONE + q * (_S1 + q * (_S2 + q * (_S3 + q * (_S4 + q * _S5)))))
         ay, az = y - cy, z - cz
         y, z = y + cosine * ay + sine * az, z + cosine * az - sine * ay
-        ax, ay, az = x - cx, y - cy, z - cz
+        z = z + load(fields, first + HOLD * LANES) * ahead
+        ax, ay, az = x - cx, y - cy, z - (cz + splat(ahead))
         inverse = inverse_root(larger(ax * ax + ay * ay + az * az, splat(_TINY)))
         outward = larger(load(fields, first + FLOOR * LANES) * inverse, splat(_ONE)) - _ONE
         store(lanes, 0, x + outward * ax)

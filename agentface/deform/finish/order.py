@@ -1,4 +1,4 @@
-"""What every deformer's skin gets last, in its order: normals, wrinkles, eyes, teeth, the head's turn, the neck."""
+"""What every deformer's skin gets last, in its order: normals, wrinkles, eyes, teeth, tongue, the head, the neck."""
 
 from __future__ import annotations
 
@@ -17,6 +17,8 @@ from agentface.deform.finish.teeth import TeethTables
 from agentface.deform.finish.wrinkle_normals import WrinkleNormalTables
 from agentface.deform.finish.wrinkles import WrinkleTables
 from agentface.deform.geometry import FaceArrays
+from agentface.deform.mouth import tongue
+from agentface.deform.mouth.tongue import TongueTables
 from agentface.head.model import HeadModel
 from agentface.mesh import normals
 
@@ -29,8 +31,9 @@ class FinishStage(IntEnum):
     NORMALS = 2
     EYES = 3
     TEETH = 4
-    HEAD = 5
-    NECK = 6
+    TONGUE = 5
+    HEAD = 6
+    NECK = 7
 
 
 class FinishTables(NamedTuple):
@@ -41,6 +44,7 @@ class FinishTables(NamedTuple):
     wrinkle_normals: WrinkleNormalTables
     eyes: EyesTables
     teeth: TeethTables
+    tongue: TongueTables
     head: HeadTurnTables
     neck: NeckTables
 
@@ -54,6 +58,7 @@ def prepare(model: HeadModel) -> FinishTables:
         wrinkle_normals=wrinkle_normals.prepare(model, of_wrinkles),
         eyes=eyeballs.prepare(model),
         teeth=teeth.prepare(model),
+        tongue=tongue.prepare(model),
         head=head_turn.prepare(model),
         neck=neck.prepare(model),
     )
@@ -74,8 +79,12 @@ def finish(first: int, last: int, tables: FinishTables, values: Floats, face: Fa
             )
         elif stage == FinishStage.EYES:
             eyeballs.apply(tables.eyes, values, face.eye_rotations)
+            eyeballs.thrust(tables.eyes, values, face.eye_thrust)
+            eyeballs.dilate(tables.eyes, values, face.pupils)
         elif stage == FinishStage.TEETH:
             teeth.apply(tables.teeth, values, face.jaw)
+        elif stage == FinishStage.TONGUE:
+            tongue.apply(tables.tongue, values, face.vertices, face.jaw, face.tongue)
         elif stage == FinishStage.HEAD:
             head_turn.apply(tables.head, values, face.head)
         elif stage == FinishStage.NECK:

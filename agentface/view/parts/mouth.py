@@ -39,6 +39,7 @@ class Mouth:
         self._program["shaded"].value = 0.0
         self._parts["teeth_upper"].draw(geometry.head)
         self._program["shaded"].value = _SHADED
+        self._parts["tongue"].reshape(geometry.tongue)
         for name in ("teeth_lower", "tongue"):
             self._parts[name].draw(geometry.head @ geometry.jaw)
 

@@ -1,4 +1,4 @@
-"""Draws the meshes that only move rigidly: teeth, tongue, cloth and eyeballs."""
+"""Draws the meshes of one piece: teeth, tongue, cloth and eyeballs."""
 
 from __future__ import annotations
 
@@ -14,24 +14,36 @@ from agentface.mesh.normals import vertex_normals
 
 
 class RigidPart:
-    """A static mesh on the GPU: position, normal and material of each vertex, and where it lies on a tooth or shirt."""
+    """A mesh on the GPU: position, normal and material of each vertex, and where it lies on a tooth or shirt."""
 
     def __init__(
         self, context: Any, program: Any, vertices: Floats, triangles: Indices, material: Floats, detail: Floats
     ) -> None:
         self.program = program
+        self._triangles, self._shown = triangles, vertices.copy()
         fields = {
             "place": vertices,
-            "facing": vertex_normals(vertices, triangles).astype(np.float32),
+            "rest": vertices,
+            "facing": vertex_normals(vertices, triangles),
             "material": material,
             "detail": detail,
         }
-        layout = [
-            (context.buffer(field.astype(np.float32).tobytes()), f"{field.shape[1]}f", name)
+        self._buffers = {
+            name: (context.buffer(field.astype(np.float32).tobytes()), f"{field.shape[1]}f")
             for name, field in fields.items()
             if name in program  # a compiler drops what a shader does not use
-        ]
+        }
+        layout = [(buffer, form, name) for name, (buffer, form) in self._buffers.items()]
         self.array = context.vertex_array(program, layout, context.buffer(triangles.astype(np.int32).tobytes()))
+
+    def reshape(self, vertices: Floats) -> None:
+        """Give it other ``vertices (P, 3)``; the same as before cost nothing."""
+        if np.array_equal(vertices, self._shown):
+            return
+        self._shown[:] = vertices
+        facing = vertex_normals(vertices, self._triangles).astype(np.float32)
+        for name, field in (("place", self._shown), ("facing", facing)):
+            self._buffers[name][0].write(field.tobytes())
 
     def draw(self, moved: Floats) -> None:
         """Draw it moved by ``(4, 4)``."""
@@ -40,7 +52,7 @@ class RigidPart:
 
 
 class Eyeball:
-    """One eye: turned about its centre, shaded by the lids as they are now."""
+    """One eye: thrust, turned about its centre, shaded by the lids as they are now."""
 
     def __init__(self, context: Any, program: Any, model: HeadModel, side: str) -> None:
         self.program, self.index = program, "lr".index(side)
@@ -57,9 +69,10 @@ class Eyeball:
         """Draw it as ``geometry`` has it."""
         turned = np.eye(4, dtype=np.float32)
         turned[:3, :3] = geometry.eye_rotations[self.index] * self.radius
-        turned[:3, 3] = self.centre
+        centre = self.centre + np.array([0.0, 0.0, geometry.eye_thrust[self.index]], np.float32)
+        turned[:3, 3] = centre
         placed = geometry.head @ turned
-        margins = [(geometry.vertices[half] - self.centre) / self.radius for half in self.lids]
+        margins = [(geometry.vertices[half] - centre) / self.radius for half in self.lids]
         for name, margin in zip(("upper_lid", "lower_lid"), margins, strict=True):
             self.program[name].value = tuple(_parabola(margin[:, 0], margin[:, 1]))
         xs = np.concatenate([margin[:, 0] for margin in margins])
@@ -67,6 +80,7 @@ class Eyeball:
         self.program["turned"].write(np.ascontiguousarray(placed.T, np.float32).tobytes())
         self.program["centre"].value = tuple(placed[:3, 3].tolist())
         self.program["radius"].value = float(self.radius)
+        self.program["dilation"].value = float(geometry.pupils[self.index])
         self.array.render()
 
 

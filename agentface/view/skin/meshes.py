@@ -28,7 +28,7 @@ class SkinFields:
 
     def __init__(self, context: Any, model: HeadModel, lips: FineLips) -> None:
         self.count, self._lips = len(model.vertices), lips
-        rest = FaceGeometry.at_rest(model.vertices, model.normals, len(model.trains))
+        rest = FaceGeometry.at_rest(model)
         self._shapes = {name: array.shape for name, array in rest.arrays()._asdict().items()}
         rows = -(-(self.count + lips.count) // _COLUMNS)
         self._texels = np.zeros((2, rows * _COLUMNS, 4), np.float32)

@@ -1,0 +1,18 @@
+"""The way out of the mouth, compiled; the numpy twin is :mod:`agentface.deform.mouth.passage`, whose code this is."""
+
+from __future__ import annotations
+
+from agentface.deform.mouth import passage
+from agentface.deform.mouth.passage import EDGE_CLEAR  # noqa: F401  # the twin's names
+from agentface.kernel import compiled_twin
+
+_NAMES = {**vars(passage), "__name__": __name__}
+inward = _NAMES["inward"] = compiled_twin(passage.inward, _NAMES, error_model="numpy")
+half_width = compiled_twin(passage.half_width, _NAMES, error_model="numpy")
+beyond_edge = compiled_twin(passage.beyond_edge, _NAMES, error_model="numpy")
+beyond_lip = compiled_twin(passage.beyond_lip, _NAMES, error_model="numpy")
+_NAMES["_along"] = compiled_twin(passage._along, _NAMES, error_model="numpy")  # noqa: SLF001  # its twin
+_NAMES["_gap"] = compiled_twin(passage._gap, _NAMES, error_model="numpy")  # noqa: SLF001  # its twin
+_NAMES["_fits"] = compiled_twin(passage._fits, _NAMES, error_model="numpy")  # noqa: SLF001  # its twin
+look_at_lips = compiled_twin(passage.look_at_lips, _NAMES, error_model="numpy")
+slot = compiled_twin(passage.slot, _NAMES, error_model="numpy")
