@@ -9,7 +9,6 @@ from agentface.deform.eyes import eyeballs
 from agentface.deform.eyes.eyeballs import EyesTables
 from agentface.kernel import kernel
 
-
 thrust = kernel(error_model="numpy")(eyeballs.thrust)
 dilate = kernel(error_model="numpy")(eyeballs.dilate)
 

@@ -17,8 +17,9 @@ from agentface.deform.finish.teeth import TeethTables
 from agentface.deform.finish.wrinkle_normals import WrinkleNormalTables
 from agentface.deform.finish.wrinkles import WrinkleTables
 from agentface.deform.geometry import FaceArrays
-from agentface.deform.mouth import tongue
-from agentface.deform.mouth.tongue import TongueTables
+from agentface.deform.tongue import tables as tongue_tables
+from agentface.deform.tongue import tongue
+from agentface.deform.tongue.tables import TongueTables
 from agentface.head.model import HeadModel
 from agentface.mesh import normals
 
@@ -58,7 +59,7 @@ def prepare(model: HeadModel) -> FinishTables:
         wrinkle_normals=wrinkle_normals.prepare(model, of_wrinkles),
         eyes=eyeballs.prepare(model),
         teeth=teeth.prepare(model),
-        tongue=tongue.prepare(model),
+        tongue=tongue_tables.prepare(model),
         head=head_turn.prepare(model),
         neck=neck.prepare(model),
     )

@@ -10,7 +10,7 @@ from agentface.deform.finish import teeth_compiled as teeth  # noqa: F401
 from agentface.deform.finish import wrinkle_normals_compiled as wrinkle_normals  # noqa: F401
 from agentface.deform.finish import wrinkles_compiled as wrinkles  # noqa: F401
 from agentface.deform.finish.order import FinishStage  # noqa: F401
-from agentface.deform.mouth import tongue_compiled as tongue  # noqa: F401
+from agentface.deform.tongue import tongue_compiled as tongue  # noqa: F401
 from agentface.kernel import compiled_twin
 from agentface.mesh import normals_compiled as normals  # noqa: F401
 

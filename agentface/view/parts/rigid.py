@@ -21,10 +21,10 @@ class RigidPart:
     ) -> None:
         self.program = program
         self._triangles, self._shown = triangles, vertices.copy()
-        fields = {
+        fields: dict[str, Floats] = {
             "place": vertices,
             "rest": vertices,
-            "facing": vertex_normals(vertices, triangles),
+            "facing": vertex_normals(vertices, triangles).astype(np.float32),
             "material": material,
             "detail": detail,
         }

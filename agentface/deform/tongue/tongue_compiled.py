@@ -1,4 +1,4 @@
-"""The tongue's loop; the numpy twin is :mod:`agentface.deform.mouth.tongue`, whose functions of one place it compiles."""
+"""The tongue's loop; the numpy twin is :mod:`.tongue`; both share the code of :mod:`.sections` and :mod:`.holding`."""
 
 from __future__ import annotations
 
@@ -7,11 +7,12 @@ from collections.abc import Callable
 from typing import Any
 
 from agentface.conventions import Doubles, Floats
-from agentface.deform.mouth import passage_compiled, tongue
-from agentface.deform.mouth.tongue import Sections, TongueTables
+from agentface.deform.tongue import holding, passage_compiled, sections
+from agentface.deform.tongue.sections import OUT, Sections
+from agentface.deform.tongue.tables import TongueTables
 from agentface.kernel import compiled_twin, kernel
 
-_names: dict[str, Any] = {**vars(tongue), "__name__": __name__, "passage": passage_compiled}
+_names: dict[str, Any] = {**vars(sections), **vars(holding), "__name__": __name__, "passage": passage_compiled}
 
 
 def _twin(function: Callable[..., Any]) -> Any:
@@ -19,15 +20,13 @@ def _twin(function: Callable[..., Any]) -> Any:
     return made
 
 
-new_sections, moves, step, at_least, posed = map(
-    _twin, (tongue.new_sections, tongue.moves, tongue.step, tongue.at_least, tongue.posed)
-)
-lips_at, floor, ceiling, room, held_within = map(
-    _twin, (tongue.lips_at, tongue.floor, tongue.ceiling, tongue.room, tongue.held_within)
-)
-limit, bend, settle, held_aside, lifted, lowered = map(
-    _twin, (tongue.limit, tongue.bend, tongue.settle, tongue.held_aside, tongue.lifted, tongue.lowered)
-)
+# in the order in which they call each other
+new_sections, strongest, moves = _twin(sections.new_sections), _twin(sections.strongest), _twin(sections.moves)
+step, at_least, posed = _twin(sections.step), _twin(holding.at_least), _twin(holding.posed)
+lips_at, floor, ceiling = _twin(holding.lips_at), _twin(holding.floor), _twin(holding.ceiling)
+room, held_within, limit = _twin(holding.room), _twin(holding.held_within), _twin(sections.limit)
+bend, settle = _twin(sections.bend), _twin(holding.settle)
+held_aside, lifted, lowered = _twin(holding.held_aside), _twin(holding.lifted), _twin(holding.lowered)
 
 
 @kernel(error_model="numpy")
@@ -54,7 +53,7 @@ def apply(tables: TongueTables, values: Floats, vertices: Floats, jaw: Floats, o
 @kernel(error_model="numpy")
 def _placed(tables: TongueTables, now: Sections, vertex: int) -> tuple[float, float, float]:
     """A vertex about the stations, m."""
-    k, part, out = tables.station[vertex], tables.part[vertex], now.limits[0]
+    k, part, out = tables.station[vertex], tables.part[vertex], now.limits[OUT]
     pitch, yaw = _between(now.pitch, k, part), _between(now.yaw, k, part)
     flat, curl = _between(now.flat, k, part), _between(now.curl, k, part)
     x = tables.arm[vertex, 0] + out * tables.arm_out[vertex, 0]

@@ -1,14 +1,15 @@
 """The way out of the mouth: what teeth and lips leave to the tongue.
 
-A row of teeth is a wall: inside it is half an ellipse in the horizontal plane (:class:`agentface.head.dental_wall.Wall`),
-before it the parabolic cylinder that touches it (:class:`agentface.deform.mouth.dental_arch.Arch`), and its edges lie at
-one height. The lips are what their rings are at columns across the mouth. Everything is in double precision, so that
-both forms of the tongue's stage share these functions; numba compiles those that take scalars or arrays for scalars.
+A row of teeth is a wall: inside it is half an ellipse in the horizontal plane
+(:class:`agentface.head.dental_wall.Wall`), before it the parabolic cylinder that touches it
+(:class:`agentface.deform.mouth.dental_arch.Arch`), and its edges lie at one height. The lips are what their rings are
+at columns across the mouth. Everything is in double precision, so that both forms of the tongue's stage share these
+functions; numba compiles those that take scalars or arrays for scalars.
 """
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
 
@@ -18,6 +19,8 @@ from agentface.head.dental_wall import CLEAR, fit_wall
 from agentface.head.model import HeadModel
 from agentface.head.ring_names import LipRing
 
+Places: TypeAlias = Any
+"""One coordinate of a place, or ``(K,)`` of many: a number in compiled code, an array in numpy's."""
 ROWS = "teeth_lower", "teeth_upper"
 MIDDLE, BACK, DEPTH, WIDTH, EDGE, FRONT, BEND = range(7)
 """Columns of :attr:`Passage.walls`."""
@@ -43,8 +46,8 @@ class Passage(NamedTuple):
     Attributes:
         walls: ``(2, 7)`` m, the lower and the upper row: middle, back, depth, half width and edge of the wall inside,
             and front and bend (1/m) of the parabola before it.
-        upper, lower: ``(R, N)``, ``(R, M)`` vertices of the halves of the lips' rings, from the left corner to the right
-            one, the last one repeated where there are fewer.
+        upper, lower: ``(R, N)``, ``(R, M)`` vertices of the halves of the lips' rings, from the left corner to the
+            right one, the last one repeated where there are fewer.
     """
 
     walls: Doubles
@@ -67,20 +70,20 @@ def prepare(model: HeadModel) -> Passage:
     return Passage(np.array(walls), upper, lower)
 
 
-def inward(wall: Doubles, x: Doubles, z: Doubles) -> Doubles:
+def inward(wall: Doubles, x: Places, z: Places) -> Places:
     """How far a place is inside a row of teeth, m; negative outside."""
     across = (x - wall[MIDDLE]) / wall[WIDTH]
     along = np.maximum(z - wall[BACK], 0.0) / wall[DEPTH]
     return wall[DEPTH] * (1.0 - np.sqrt(across * across + along * along))
 
 
-def half_width(wall: Doubles, z: Doubles) -> Doubles:
+def half_width(wall: Doubles, z: Places) -> Places:
     """How far aside a place within a row of teeth is free, m."""
     along = np.minimum(np.maximum(z - wall[BACK], 0.0) / wall[DEPTH], 1.0)
     return wall[WIDTH] * np.sqrt(1.0 - along * along)
 
 
-def beyond_edge(wall: Doubles, x: Doubles, z: Doubles) -> Doubles:
+def beyond_edge(wall: Doubles, x: Places, z: Places) -> Places:
     """How far past the height of a row's edges a place may go, towards the row's gum, m; negative at the row itself."""
     aside = x - wall[MIDDLE]
     before = z - (wall[FRONT] - wall[BEND] * aside * aside)
@@ -88,14 +91,14 @@ def beyond_edge(wall: Doubles, x: Doubles, z: Doubles) -> Doubles:
     return free - EDGE_CLEAR
 
 
-def beyond_lip(inner: Doubles, outer: Doubles, z: Doubles) -> Doubles:
+def beyond_lip(inner: Places, outer: Places, z: Places) -> Places:
     """How far past the edge of a lip between depths ``inner`` and ``outer`` a place may go, m; negative within it."""
     behind, before = np.maximum(inner - _LIP_NEAR - z, 0.0), np.maximum(z - outer - _LIP_NEAR, 0.0)
     return _LIP_INSIDE * behind + _LIP_BEFORE * before - EDGE_CLEAR
 
 
 def look_at_lips(passage: Passage, vertices: Floats, across: Doubles, lips: Doubles) -> None:
-    """Write the x of each column into ``across (COLUMNS,)``, and into ``lips (6, COLUMNS)`` what the lips are there, m."""
+    """Write into ``across (COLUMNS,)`` the x of each column, and into ``lips (6, COLUMNS)`` the lips there, m."""
     last = passage.upper.shape[1] - 1
     left, right = vertices[passage.upper[LipRing.CONTACT, 0], 0], vertices[passage.upper[LipRing.CONTACT, last], 0]
     for column in range(COLUMNS):

@@ -1,9 +1,9 @@
-"""The way out of the mouth, compiled; the numpy twin is :mod:`agentface.deform.mouth.passage`, whose code this is."""
+"""The way out of the mouth, compiled; the numpy twin is :mod:`agentface.deform.tongue.passage`, whose code this is."""
 
 from __future__ import annotations
 
-from agentface.deform.mouth import passage
-from agentface.deform.mouth.passage import EDGE_CLEAR  # noqa: F401  # the twin's names
+from agentface.deform.tongue import passage
+from agentface.deform.tongue.passage import EDGE_CLEAR  # noqa: F401  # the twin's names
 from agentface.kernel import compiled_twin
 
 _NAMES = {**vars(passage), "__name__": __name__}
