@@ -9,7 +9,7 @@ import numpy as np
 from agentface.conventions import Doubles
 from agentface.mesh.glb import MeshArrays, Shape
 
-_DEEP = {"teeth_lower": 0.0065, "teeth_upper": 0.009}
+_DEEP = {"teeth_lower": 0.0065, "teeth_upper": 0.0125}
 """m from the edges of the teeth: what of each row a tongue between them may touch."""
 _MIDDLE = 0.003  # m from the median plane, where the row is nearest to the lips
 _REACH = 0.97  # of the way there, beyond which a tooth says nothing about the width

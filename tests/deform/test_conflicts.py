@@ -38,7 +38,17 @@ def check_poses(face, seed):
     flipped, through = {}, {}
     for number, pose in enumerate(random_poses(COUNT, seed)):
         geometry = deformer.at(pose)
-        for name in ("vertices", "normals", "wrinkles", "eye_rotations", "jaw", "head"):
+        for name in (
+            "vertices",
+            "normals",
+            "wrinkles",
+            "eye_rotations",
+            "jaw",
+            "head",
+            "tongue",
+            "pupils",
+            "eye_thrust",
+        ):
             assert np.isfinite(getattr(geometry, name)).all(), (number, name)
         over = np.flatnonzero(edges.flipped(geometry.vertices) & outside)
         if len(over):

@@ -14,7 +14,7 @@ from agentface.deform.eyes import eyeballs_compiled as compiled
 from agentface.errors import InvalidValueError
 from agentface.face import Face
 from agentface.parameters import NAMES, PARAMETERS, FacePose, parameter
-from tests.heads import head_model
+from tests.heads import deformer_of, head_model
 
 FACES = {face: head_model(face) for face in ("amber", "onyx")}
 TABLES = {face: eyeballs.prepare(model) for face, model in FACES.items()}
@@ -133,3 +133,14 @@ def test_a_picture_is_drawn_of_a_face_that_looks_at_a_point(monkeypatch, tmp_pat
     assert done.exit_code == 0, done.output
     assert seen[0]["gaze_vergence"] > 0.05
     assert CliRunner().invoke(cli, ["render", "--look-at", "0.05,0", "-o", target]).exit_code == 2
+
+
+@pytest.mark.parametrize("compiled", [True, False])
+def test_an_eye_comes_out_and_its_pupil_grows_by_equal_factors(compiled):
+    deformer = deformer_of(compiled=compiled)
+    for value in (-1.0, -0.5, 0.0, 0.25, 1.0):
+        geometry = deformer.at(FacePose().replace({"eye_thrust_l": value, "pupil_dilation_r": value}))
+        np.testing.assert_allclose(geometry.eye_thrust, [0.002 * value, 0.0], atol=1e-9)
+        np.testing.assert_allclose(geometry.pupils, [1.0, 2.0**value], rtol=1e-6)
+    third = 1 / 3
+    assert 0.1 < third * 0.5 < third * 2.0 < 0.8, "a pupil is 2 to 8 mm wide, an iris 12"

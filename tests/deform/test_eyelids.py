@@ -149,9 +149,12 @@ def test_nothing_goes_below_the_sphere_of_the_lids(fractions, size, seed):
     push = np.random.default_rng(seed).normal(0, size, FACES["amber"].vertices.shape).astype(np.float32)
     for face, model in FACES.items():
         tables = TABLES[face]
-        points = moved(face, spread(fractions), model.vertices + push)
+        values = spread(fractions)
+        points = moved(face, values, model.vertices + push)
         for side, vertex in enumerate(tables.vertex.reshape(2, -1)):
-            far, rest = (np.linalg.norm(p[vertex] - tables.centre[side], axis=1) for p in (points, model.vertices))
+            ahead = np.array([0, 0, eyeballs.FARTHEST * values[tables.eyes.thrust[side]]])
+            rest = np.linalg.norm(model.vertices[vertex] - tables.centre[side], axis=1)
+            far = np.linalg.norm(points[vertex] - tables.centre[side] - ahead, axis=1)
             assert (far > np.minimum(rest, model.eyelids.sphere * model.eyes.radius) - 2e-6).all()
 
 
@@ -175,7 +178,7 @@ def test_a_mirrored_pose_gives_mirrored_lids(fractions):
     mirrored = values.copy()
     for index, name in enumerate(NAMES):
         other = name[:-2] + {"_l": "_r", "_r": "_l"}[name[-2:]] if name.endswith(("_l", "_r")) else name
-        mirrored[NAMES.index(other)] = values[index] * (-1 if name in ("gaze_yaw", "head_yaw", "head_roll") else 1)
+        mirrored[NAMES.index(other)] = values[index] * (-1 if PARAMETERS[index].sideways else 1)
     for face, model in FACES.items():
         one, other = moved(face, values), moved(face, mirrored)
         np.testing.assert_allclose(one[model.mirror] * [-1, 1, 1], other, atol=1e-5)
@@ -282,3 +285,21 @@ def test_the_lids_slant_with_an_inner_brow_that_rises_alone(face):
     assert sad[inner].mean() > 1e-4
     assert sad[outer].mean() < -1e-4
     np.testing.assert_array_equal(posed(face, frontalis_medialis=1, frontalis_lateralis=1), rest)
+
+
+@pytest.mark.parametrize("way", [-1.0, 1.0])
+def test_the_lids_go_along_with_an_eye_that_comes_out_or_sinks_in(face, way):
+    model, tables = FACES[face], TABLES[face]
+    move = posed(face, eye_thrust=way) - model.vertices
+    for side, name in enumerate("lr"):
+        ring = model.eyelids.rings[name][0]
+        margin = move[ring.upper + ring.lower]
+        np.testing.assert_allclose(margin[:, 2], way * eyeballs.FARTHEST, atol=2e-5)
+        np.testing.assert_allclose(margin[:, :2], 0.0, atol=2e-5)
+        far = np.linalg.norm(move[tables.vertex[side].ravel()], axis=1)
+        assert far.max() < 1.1 * eyeballs.FARTHEST
+    beside = np.abs(model.vertices[:, 0]) < 0.2 * model.landmarks.eye_separation
+    assert not move[beside | (model.vertices[:, 1] < model.landmarks["nose_tip"][1])].any()
+    for closed in ({}, {CLOSE: 1.0}, {CLOSE: 1.0, SQUEEZE: 1.0}):
+        before, after = posed(face, **closed), posed(face, eye_thrust=way, **closed)
+        assert largest_gap(face, after) < largest_gap(face, before) + 1e-4

@@ -8,7 +8,7 @@ import pytest
 
 from agentface.deform.geometry import FaceGeometry
 from agentface.parameters import FacePose
-from tests.heads import deformer_of
+from tests.heads import deformer_of, head_model
 
 SMILE = FacePose.of(zygomaticus_major=1.0, head_yaw=0.2)
 
@@ -31,13 +31,14 @@ def test_a_geometry_is_pickled_and_not_hashed():
 
 
 def test_leading_dimensions_are_faces():
-    rest = np.zeros((5, 3), np.float32)
-    many = FaceGeometry.at_rest(rest, rest, trains=2, batch=(3, 4))
+    model = head_model()
+    many = FaceGeometry.at_rest(model, batch=(3, 4))
     assert many.batch == (3, 4)
     assert len(many) == 3
-    assert many.wrinkle_levels.shape == (3, 4, 2)
+    assert many.wrinkle_levels.shape == (3, 4, len(model.trains))
     assert many[1].batch == (4,)
     assert len(many[:2]) == 2
+    many.vertices[:] = 0
     many[1][2].vertices[0] = 7
     assert many.vertices[1, 2, 0].tolist() == [7, 7, 7]
     assert np.count_nonzero(many.vertices) == 3

@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
-from agentface.parameters import NAMES, FacePose, indices_of
+from agentface.parameters import NAMES, PARAMETERS, FacePose, indices_of
 from tests.deform.conflicts import random_poses
 from tests.heads import deformer_of, head_model
 
-TURNED = [name for name in NAMES if name.endswith(("yaw", "roll"))]
+TURNED = [known.name for known in PARAMETERS if known.sideways]
 
 
 def image(pose):

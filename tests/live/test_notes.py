@@ -66,7 +66,7 @@ def replay(face, recorder):
 
 def assert_the_same(frame, other):
     assert frame.pose == other.pose
-    for name in ("vertices", "normals", "wrinkles", "eye_rotations", "jaw", "head"):
+    for name in ("vertices", "normals", "wrinkles", "eye_rotations", "jaw", "head", "tongue", "pupils", "eye_thrust"):
         np.testing.assert_array_equal(getattr(frame.geometry, name), getattr(other.geometry, name), err_msg=name)
 
 

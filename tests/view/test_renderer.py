@@ -19,7 +19,9 @@ def shown(model, **shapes):
     vertices = model.vertices.copy()
     for name, weight in shapes.items():
         vertices += np.float32(weight) * model.shapes[name].dense(len(vertices))
-    return FaceGeometry.at_rest(vertices, vertex_normals(vertices, model.triangles), len(model.trains))
+    geometry = FaceGeometry.at_rest(model, normals=vertex_normals(vertices, model.triangles))
+    geometry.vertices[:] = vertices
+    return geometry
 
 
 @pytest.fixture(scope="module", params=["amber", "onyx"])
@@ -177,3 +179,21 @@ def test_looks_are_checked(tmp_path, renderer):
     assert {fault.where for fault in caught.value.faults} == {"hair.style", "hair.grey"}
     assert all(fault.line for fault in caught.value.faults)
     assert load_look(renderer.model) == renderer.look
+
+
+def test_pupils_eyeballs_and_tongue_change_the_picture(renderer):
+    model, size = renderer.model, (400, 400)
+    rest = renderer.render(shown(model), size).astype(int)
+    wide, small, out = (shown(model) for _ in range(3))
+    wide.pupils[:], small.pupils[:], out.eye_thrust[:] = 2.0, 0.5, 0.01
+    eyes = [renderer.render(geometry, size).astype(int) for geometry in (wide, small, out)]
+    assert (np.abs(eyes[0] - rest).max(2) > 12).sum() > 20
+    dark = [int((picture.sum(2) < 60)[120:220].sum()) for picture in (eyes[0], rest, eyes[1])]
+    assert dark[0] > dark[1] >= dark[2]
+    assert (np.abs(eyes[2] - rest).max(2) > 12).any()
+    licked = shown(model, jawOpen=0.8)
+    before = renderer.render(licked, size).astype(int)
+    licked.tongue[:, 2] += 0.03
+    after = renderer.render(licked, size).astype(int)
+    assert (np.abs(after - before).max(2) > 12).sum() > 50
+    np.testing.assert_array_equal(renderer.render(shown(model), size), rest)

@@ -156,8 +156,8 @@ def held_aside(
     low = np.maximum(walls[0, MIDDLE] - lower, walls[1, MIDDLE] - shifted - upper)
     mouth = np.minimum(np.maximum((ahead - inner + _LIPS_FROM) / (_LIPS_FROM - _LIPS_WHOLE), 0.0), 1.0)
     free = UNLIMITED * (1.0 - mouth) + spread
-    high = np.minimum(high, limits[LEFT] - shifted - 2.0 * passage.EDGE_CLEAR + free)
-    low = np.maximum(low, limits[RIGHT] - shifted + 2.0 * passage.EDGE_CLEAR - free)
+    high = np.minimum(high, limits[LEFT] - shifted - passage.LIP_CLEAR + free)
+    low = np.maximum(low, limits[RIGHT] - shifted + passage.LIP_CLEAR - free)
     return x + limits[FORCE] * (held_within(low, high, x) - x), z
 
 

@@ -29,7 +29,9 @@ BOTTOM, TOP, INNER_LOWER, OUTER_LOWER, INNER_UPPER, OUTER_UPPER = range(6)
 COLUMNS = 17
 """Places across the mouth at which a frame looks at the lips."""
 EDGE_CLEAR = 0.0006
-"""m that the tongue keeps from the edges of the teeth, and from the lips."""
+"""m that the tongue keeps from the edges of the teeth."""
+LIP_CLEAR = 0.001
+"""m that it keeps from the lips."""
 _NEAR = 0.0008  # m from a row, within which its edges count whole
 _INSIDE, _BEFORE = 3.0, 1.2  # how steeply what is free widens behind a row of teeth and before it
 _LIP_INSIDE, _LIP_BEFORE = 0.3, 1.6
@@ -94,7 +96,7 @@ def beyond_edge(wall: Doubles, x: Places, z: Places) -> Places:
 def beyond_lip(inner: Places, outer: Places, z: Places) -> Places:
     """How far past the edge of a lip between depths ``inner`` and ``outer`` a place may go, m; negative within it."""
     behind, before = np.maximum(inner - _LIP_NEAR - z, 0.0), np.maximum(z - outer - _LIP_NEAR, 0.0)
-    return _LIP_INSIDE * behind + _LIP_BEFORE * before - EDGE_CLEAR
+    return _LIP_INSIDE * behind + _LIP_BEFORE * before - LIP_CLEAR
 
 
 def look_at_lips(passage: Passage, vertices: Floats, across: Doubles, lips: Doubles) -> None:

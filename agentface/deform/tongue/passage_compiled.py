@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from agentface.deform.tongue import passage
-from agentface.deform.tongue.passage import EDGE_CLEAR  # noqa: F401  # the twin's names
+from agentface.deform.tongue.passage import EDGE_CLEAR, LIP_CLEAR  # noqa: F401  # the twin's names
 from agentface.kernel import compiled_twin
 
 _NAMES = {**vars(passage), "__name__": __name__}

@@ -14,6 +14,7 @@ FIGURES: dict[str, str] = {
     "combination": "Figures 4 and 5: one, two and three muscles, combined in three ways",
     "eyes": "Figures 7 and 8: closing one eye, closing both; and the squeeze that closes",
     "jaw": "the jaw's opening, from closed to wide",
+    "tongue": "the tongue, out of the mouth and in it",
     "wrinkles": "Figures 11 and 12: shading normals at the wrinkles' feet, and wrinkles on mesh and forehead",
     "texture": "a picture worn as skin",
     "muscles": "the muscles on the face, by name and action unit",

@@ -23,7 +23,7 @@ def figures(face: str | Path, deformer_name: str = DEFAULT_DEFORMER) -> dict[str
     deformer, renderer = make_deformer(deformer_name, model), Renderer(model)
     panels = []
     for name, turn in _TURNS_DEG.items():
-        camera = _close(model, math.radians(turn))
+        camera = close_to_the_mouth(model, math.radians(turn))
         for opening in OPENINGS:
             picture = renderer.render(deformer.at(FacePose.of(jaw_open=opening)), _SIZE, camera, "portrait")
             degrees = f"the jaw turns by {opening * model.jaw.widest_deg:.0f} degrees"
@@ -31,7 +31,7 @@ def figures(face: str | Path, deformer_name: str = DEFAULT_DEFORMER) -> dict[str
     return {"jaw.png": png(sheet(panels, columns=len(OPENINGS)))}
 
 
-def _close(model: HeadModel, turn: float) -> Camera:
+def close_to_the_mouth(model: HeadModel, turn: float) -> Camera:
     """A camera on the mouth and the chin, ``turn`` radians to the person's left of the front."""
     x, y, z = (0.5 * (model.landmarks["lower_lip_middle"] + model.landmarks["pogonion"])).tolist()
     eye = (x + _DISTANCE * math.sin(turn), y + 0.03 * _DISTANCE, z + _DISTANCE * math.cos(turn))

@@ -11,7 +11,7 @@ from PIL import Image
 from agentface.face import Face
 from agentface.head.model import load_model
 from agentface.parameters import VECTOR_MUSCLES
-from agentface.studies.figures import expressions, eyes, jaw, looks, muscles, overlay, regions, rings
+from agentface.studies.figures import expressions, eyes, jaw, looks, muscles, overlay, regions, rings, tongue
 from agentface.view.camera import Camera
 from agentface.view.renderer import Renderer
 
@@ -123,6 +123,7 @@ def test_looks_and_styles_differ(monkeypatch):
         (expressions, {"_SIZE": (48, 56)}, ["emotional-faces.png"]),
         (eyes, {"_PAIR": (56, 25), "_SINGLE": (33, 29)}, ["eyelids.png", "squeeze.png"]),
         (jaw, {"_SIZE": (48, 56)}, ["jaw.png"]),
+        (tongue, {"_SIZE": (48, 56)}, ["tongue.png"]),
     ],
 )
 def test_the_figures_of_the_paper_are_drawn(monkeypatch, module, sizes, files):
