@@ -22,5 +22,8 @@ def read_faces(readings: Readings, faces: FaceArrays, out: Doubles) -> None:
             faces.head[index],
             faces.smooth_normals[index],
             faces.wrinkle_levels[index],
+            faces.tongue[index],
+            faces.pupils[index],
+            faces.eye_thrust[index],
         )
         read(readings, face, out[index])

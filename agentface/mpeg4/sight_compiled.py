@@ -47,7 +47,7 @@ def new_sight(model: HeadModel, features: Features) -> Sight:
     shared = tables.of(model)
     readings = features.readings
     seen = np.unique(readings.vertex[readings.kind != Kind.BONE]).astype(np.int32)
-    face = FaceGeometry.at_rest(model.vertices, model.normals, len(model.trains)).arrays()
+    face = FaceGeometry.at_rest(model).arrays()
     matrix = np.ascontiguousarray(features.matrix, np.float64)
     return Sight(shared, order_compiled.new_scratch(shared), face, seen, readings, matrix, np.zeros(len(readings.kind)))
 

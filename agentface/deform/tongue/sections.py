@@ -11,13 +11,15 @@ from agentface.deform.tongue import passage
 from agentface.deform.tongue.passage import BACK, COLUMNS, DEPTH, EDGE, MIDDLE, OUTER_LOWER, WIDTH
 from agentface.deform.tongue.tables import STATIONS, TongueTables
 
-OUT, FORCE, FAN, RIGHT, LEFT, AHEAD, OVER, BENDS, SPREADS, HEEDLESS = range(10)
+OUT, FORCE, FAN, RIGHT, LEFT, AHEAD, OVER, BENDS, SPREADS, HEEDLESS, HANGS = range(11)
 """Places in :attr:`Sections.limits`."""
-LIMITS = 10
+LIMITS = 11
 UNLIMITED = 0.03
 """m, what is as good as no limit."""
 _LIFT, _SINK = 0.008, 0.004  # m, of the back of the tongue
 _TIP_UP, _TIP_DOWN, _TIP_ASIDE, _DROOP = 1.1, 0.7, 0.85, 0.6  # rad; how far a tongue that is out hangs down
+_DROOP_LEAST = 0.15  # rad
+_HANGS_ALREADY = 0.4  # rad of the way down, that a tongue which is out has gone
 _BEND_MORE = 0.3  # as a part, when it is out
 _BEND_FROM, _BEND_LAST, _BEND_BEFORE = 0.45, 0.75, 0.12
 """Where along the tongue it bends at rest, where at the latest, and how much before it leaves the lips."""
@@ -41,7 +43,8 @@ class Sections(NamedTuple):
         limits: by the names above: how far it is out, 0..1; how far all limits are in force, 0..1; half of its width
             between the teeth, m; the ends of the lips' opening, m; how far past the incisors it may reach, m; whether
             it lies over the teeth, 0..1; where along it the bend begins, 0..1; the depth before the lips from which on
-            it may spread, m; how far it need not heed lips that let nothing through, m.
+            it may spread, m; how far it need not heed lips that let nothing through, m; the turn by which
+            it hangs down, rad.
     """
 
     place: Doubles
@@ -114,6 +117,8 @@ def limit(tables: TongueTables, values: Floats, vertices: Floats, jaw: Floats, n
     now.limits[AHEAD] = max(out - _LEAVES[0], 0.0) * 3.0 * reach
     now.limits[OVER] = leaves
     now.limits[HEEDLESS] = UNLIMITED * (1.0 - leaves * step(0.0, _AJAR, through))
+    turned = np.arctan2(jaw[2, 1], jaw[1, 1])  # the jaw itself lets it hang
+    now.limits[HANGS] = out * out * max(_DROOP - turned, _DROOP_LEAST)
     now.limits[SPREADS] = now.lips[OUTER_LOWER, COLUMNS // 2]
     lip = now.limits[SPREADS] + tip_z - ahead
     leaves_lips = 1.0 - max(tip_z + out * reach - lip, 0.0) / (
@@ -129,9 +134,9 @@ def bend(tables: TongueTables, values: Floats, now: Sections) -> None:
     out, raised = now.limits[OUT], values[tables.parameters[1]]
     up, aside, rolled = (values[tables.parameters[2]], values[tables.parameters[3]], values[tables.parameters[4]])
     lift = _LIFT * raised if raised > 0.0 else _SINK * raised
-    pitch = _TIP_UP * up if up > 0.0 else _TIP_DOWN * up
+    pitch = _TIP_UP * up if up > 0.0 else (_TIP_DOWN - _HANGS_ALREADY * out) * up
     more = 1.0 + _BEND_MORE * out
-    pitch = more * pitch - _DROOP * out * out
+    pitch = more * pitch - now.limits[HANGS]
     hangs = _BEND_BEFORE if pitch < 0.0 else 0.0  # what hangs down clears the lip first
     start = now.limits[BENDS] + out * hangs
     for k in range(STATIONS):
