@@ -49,10 +49,16 @@ def check_points(document: Document, rows: Mapping[str, FeaturePointRow], vertex
             document.fault(("feature_points", number, "vertex"), f"a vertex in 0..{vertex_count - 1}", str(row.vertex))
 
 
-def check_parts(path: Path, rows: Mapping[str, FeaturePointRow], counts: Mapping[str, int]) -> None:
+def check_parts(path: str | Path, rows: Mapping[str, FeaturePointRow], counts: Mapping[str, int]) -> None:
     """Raise DataError for points that are no vertices of a part, by the parts' ``counts`` of vertices."""
     faults = [
-        Fault(path, None, f"feature_points.{number}.vertex", f"a vertex in 0..{counts[row.mesh] - 1}", str(row.vertex))
+        Fault(
+            Path(path),
+            None,
+            f"feature_points.{number}.vertex",
+            f"a vertex in 0..{counts[row.mesh] - 1}",
+            str(row.vertex),
+        )
         for number, row in rows.items()
         if row.mesh != "skin" and row.vertex is not None and row.vertex >= counts[row.mesh]
     ]

@@ -31,7 +31,7 @@ _ZERO, _BEGIN, _BACK = 1e-3, 1e-3, 1e-2
 """How strongly rest holds where every FAP is given, the pose that a first frame begins with, and the frame before."""
 _SHUT, _CLOSED, _SHARES = 2.0, 6.0, 0.25
 """The weight of an eye's being shut beside one for each lid; of one that is to be closed, and of its lids then."""
-_CLOSING, _AJAR = 0.85, 0.05
+_CLOSING, _AJAR = 0.85, 0.03
 """Of the way to closed: an eye that is to be farther is to be closed, whatever its lids share of it; what is ajar."""
 _SERVES = 0.3
 """Of a parameter's largest effect: FAPs that it does less for do not move it by themselves."""
