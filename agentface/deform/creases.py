@@ -68,7 +68,7 @@ def _moves(model: HeadModel, of_eyelids: EyelidsTables, of_lips: LipTables) -> l
     moves = []
     for name, part in _MOVES.items():
         values, there = FacePose.of(**{name: 1.0}).array, rest.copy()
-        lips.contract(of_lips, values, there)
+        lips.contract(of_lips, values, lips.as_they_lie(of_lips, rest), there)
         eyelids.apply(of_eyelids, values, there)
         lips.surface(of_lips, there)
         moves.append(part * (there[: len(model.vertices)].astype(np.float64) - model.vertices))

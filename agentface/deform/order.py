@@ -31,16 +31,19 @@ class Stage(IntEnum):
 
 
 def deform(  # noqa: C901  # a list of stages, in the one form that numba takes
-    first: int, last: int, tables: SkinTables, values: Floats, points: Floats
+    first: int, last: int, tables: SkinTables, values: Floats, found: Floats, points: Floats
 ) -> None:
-    """The stages ``first`` to ``last`` on ``points (P, 3)`` m, at the pose ``values (COUNT,)``."""
+    """The stages ``first`` to ``last`` on ``points (P, 3)`` m, at the pose ``values (COUNT,)``.
+
+    ``found (144, 3)`` m is where orbicularis oris finds its control points: :func:`.lips.contract`.
+    """
     for stage in range(first, last + 1):
         if stage == Stage.VOLUMES:
             volumes.apply(tables.volumes, values, points)
         elif stage == Stage.LIMITS:
             limits.apply(tables.limits, points)
         elif stage == Stage.ORBICULARIS_ORIS:
-            lips.contract(tables.lips, values, points)
+            lips.contract(tables.lips, values, found, points)
         elif stage == Stage.EYELIDS:
             eyelids.apply(tables.eyelids, values, points)
         elif stage == Stage.JAW:

@@ -20,11 +20,12 @@ from agentface.deform.finish.order_compiled import finish
 from agentface.deform.geometry import FaceArrays
 from agentface.deform.mouth import contact_compiled as contact  # noqa: F401
 from agentface.deform.mouth import jaw_compiled as jaw  # noqa: F401
-from agentface.deform.mouth import lips_compiled as lips  # noqa: F401
+from agentface.deform.mouth import lips_compiled as lips
 from agentface.deform.muscles import combine_compiled as combine
 from agentface.deform.muscles import limits_compiled as limits  # noqa: F401
 from agentface.deform.muscles import squash_compiled as squash  # noqa: F401
 from agentface.deform.muscles import volumes_compiled as volumes  # noqa: F401
+from agentface.deform.mouth.lips import CONTRACTIONS
 from agentface.deform.muscles.combine import STEP
 from agentface.deform.order import Stage
 from agentface.deform.tables import FaceTables
@@ -39,12 +40,19 @@ _FINISH_FIRST, _FINISH_LAST = int(FinishStage.SMOOTH_NORMALS), int(FinishStage.N
 
 
 class Scratch(NamedTuple):
-    """What one worker overwrites for each face: M contractions, their parts in S steps, P moved points in metres."""
+    """What one worker overwrites for each face: M contractions, their parts in S steps, P moved points in metres.
+
+    ``shares`` and ``found`` are orbicularis oris's in these steps: :meth:`.combine.Combiner.apply`.
+    """
 
     levels: Doubles
     """``(M,)``."""
     parts: Floats
     """``(S, M)``."""
+    shares: Floats
+    """``(S + 1, 3)``."""
+    found: Floats
+    """``(144, 3)`` m."""
     points: Floats
     """``(P, 3)``."""
 
@@ -52,7 +60,13 @@ class Scratch(NamedTuple):
 def new_scratch(tables: FaceTables) -> Scratch:
     """The scratch of one worker."""
     muscles, steps = len(VECTOR_MUSCLES), math.ceil(1.0 / STEP)
-    return Scratch(np.zeros(muscles), np.zeros((steps, muscles), np.float32), tables.skin.rest.copy())
+    return Scratch(
+        np.zeros(muscles),
+        np.zeros((steps, muscles), np.float32),
+        np.zeros((steps + 1, CONTRACTIONS), np.float32),
+        np.zeros((len(tables.skin.lips.control_rest), CONTRACTIONS), np.float32),
+        tables.skin.rest.copy(),
+    )
 
 
 deform = compiled_twin(order.deform, globals(), error_model="numpy")
@@ -63,8 +77,9 @@ def shape(tables: FaceTables, scratch: Scratch, last: int, values: Floats) -> No
     """Move ``scratch.points`` to the pose ``values (COUNT,)``: the vector muscles, then the stages up to ``last``."""
     scratch.levels[:] = values[_FIRST_MUSCLE : _FIRST_MUSCLE + scratch.levels.shape[0]]
     combine.slice_steps(scratch.levels, STEP, scratch.parts)
-    combine.contract(tables.skin.rest, tables.blocks, scratch.parts, scratch.points)
-    deform(_FIRST, last, tables.skin, values, scratch.points)
+    lips.slice_steps(tables.skin.lips, values, STEP, scratch.shares)
+    combine.contract(tables.skin.rest, tables.blocks, scratch.parts, scratch.shares, scratch.found, scratch.points)
+    deform(_FIRST, last, tables.skin, values, scratch.found, scratch.points)
 
 
 @kernel(error_model="numpy")

@@ -5,12 +5,15 @@ from __future__ import annotations
 from collections.abc import Callable
 from functools import cached_property, partial
 
+import numpy as np
+
 from agentface.conventions import Floats
 from agentface.deform import order, tables
 from agentface.deform.finish import order as last_part
 from agentface.deform.finish.order import FinishStage
 from agentface.deform.geometry import FaceArrays, FaceGeometry
-from agentface.deform.muscles.combine import Combiner, Method
+from agentface.deform.mouth import lips
+from agentface.deform.muscles.combine import STEP, Combiner, Method
 from agentface.deform.order import Stage
 from agentface.deform.protocol import Frames
 from agentface.head.model import HeadModel
@@ -39,12 +42,15 @@ class GeometricDeformer:
         self._tables = tables.of(model)
         skin = self._tables.skin
         self._points = skin.rest.copy()
-        self._deform, self._finish = order.deform, last_part.finish
+        self._found = lips.as_they_lie(skin.lips, skin.rest)
+        self._deform, self._finish, self._slice = order.deform, last_part.finish, lips.slice_steps
         self.frames: Frames = self._by_parts
         if compiled:
             from agentface.deform import order_compiled
+            from agentface.deform.mouth import lips_compiled
 
             self._deform, self._finish = order_compiled.deform, order_compiled.finish
+            self._slice = lips_compiled.slice_steps
             if combine == "parallel":
                 self.frames = partial(order_compiled.frames, self._tables, order_compiled.new_scratch(self._tables))
         self._rows = self._new_rows()
@@ -55,6 +61,13 @@ class GeometricDeformer:
         skin = self._tables.skin
         muscles = tables.muscles_of(self._model, skin.lips)
         return Combiner(skin.rest, muscles, self._method, compiled=self._compiled)
+
+    @cached_property
+    def _shares(self) -> Floats:
+        """Which part of orbicularis oris acts in each step; where muscles act otherwise, all of it after them."""
+        shares = np.zeros((self._combiner.steps + 1, lips.CONTRACTIONS), np.float32)
+        shares[-1] = 1.0
+        return shares
 
     def reset(self, pose: FacePose) -> None:
         """Nothing: this face has no memory."""
@@ -94,15 +107,17 @@ class GeometricDeformer:
         for index in range(first, last):
             values, face = poses[index], FaceArrays(*(array[index] for array in rows))
             self._contract(values)
-            self._deform(Stage.VOLUMES, Stage.MIDPOINTS, self._tables.skin, values, self._points)
+            self._deform(Stage.VOLUMES, Stage.MIDPOINTS, self._tables.skin, values, self._found, self._points)
             self._copy(face)
             self._finish(FinishStage.SMOOTH_NORMALS, FinishStage.NECK, self._tables.finish, values, face)
 
     def _contract(self, values: Floats) -> None:
-        self._combiner.apply(values[_MUSCLES], self._points)
+        if self._method == "parallel":
+            self._slice(self._tables.skin.lips, values, STEP, self._shares)
+        self._combiner.apply(values[_MUSCLES], self._points, self._shares, self._found)
 
     def _skin_stages(self, first: int, last: int, pose: FacePose) -> None:
-        self._deform(first, last, self._tables.skin, pose.array, self._points)
+        self._deform(first, last, self._tables.skin, pose.array, self._found, self._points)
 
     def _copy(self, face: FaceArrays) -> None:
         face.vertices[:] = self._points[: len(face.vertices)]

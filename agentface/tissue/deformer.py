@@ -12,6 +12,7 @@ from agentface.deform import tables as skin_tables
 from agentface.deform.finish import order as last_part
 from agentface.deform.finish.order import FinishStage
 from agentface.deform.geometry import FaceArrays, FaceGeometry
+from agentface.deform.mouth import lips
 from agentface.deform.order import Stage
 from agentface.deform.protocol import Frames
 from agentface.head.model import HeadModel
@@ -54,6 +55,7 @@ class TissueDeformer:
         self._tissue = tables.of(model, compiled=compiled) if tissue is None else tissue
         self._tables = skin_tables.of(model)
         self._points = self._tables.skin.rest.copy()
+        self._found = lips.as_they_lie(self._tables.skin.lips, self._points)
         self._deform, self._finish, self._put = order.deform, last_part.finish, skin.put
         if compiled:
             from agentface.deform import order_compiled
@@ -123,8 +125,10 @@ class TissueDeformer:
     def _write(self, positions: Floats, values: Floats, geometry: FaceGeometry) -> None:
         self._put(self._tissue.epidermis, positions, self._points)
         others = np.where(self._driven, np.float32(0.0), values)  # tissue gathers by itself where its muscles pull
-        self._deform(int(Stage.VOLUMES), int(Stage.VOLUMES), self._tables.skin, others, self._points)
-        self._deform(int(Stage.ORBICULARIS_ORIS), int(Stage.MIDPOINTS), self._tables.skin, values, self._points)
+        skin = self._tables.skin
+        self._deform(int(Stage.VOLUMES), int(Stage.VOLUMES), skin, others, self._found, self._points)
+        self._found[:] = self._points[skin.lips.skin_count :, :1]
+        self._deform(int(Stage.ORBICULARIS_ORIS), int(Stage.MIDPOINTS), skin, values, self._found, self._points)
         geometry.vertices[:] = self._points[: len(geometry.vertices)]
         first, last = int(FinishStage.SMOOTH_NORMALS), int(FinishStage.NECK)
         self._finish(first, last, self._tables.finish, values, geometry.arrays())

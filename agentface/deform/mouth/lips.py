@@ -22,6 +22,8 @@ from agentface.parameters import indices_of
 
 _BLEND = (0.34, 0.67, 1.0)  # from the innermost ring of the patch
 _OUTER_BLEND = (0.12, 0.5, 0.88)  # from its outermost ring
+CONTRACTIONS = 3
+"""Pucker, press and roll."""
 RED = 2, 3
 """Rows of control points whose middle is the middle of the red."""
 THINNED = tuple(np.float32(share) for share in (0.2, 0.7, 1.0, 1.0, 0.7, 0.15))
@@ -117,13 +119,22 @@ def prepare(model: HeadModel) -> LipTables:
     )
 
 
-def contract(tables: LipTables, values: Floats, points: Floats) -> None:
+def contract(tables: LipTables, values: Floats, found: Floats, points: Floats) -> None:
     """Orbicularis oris: p' = p + o (shift + pull (E(p) - p)) on the control points, E(p) the place on the ellipse.
 
-    ``shift`` is rotation and extrusion (Bui et al., section 3.2, misprint corrected: a sum of displacements). In height
+    ``shift`` is rotation and extrusion (Bui et al., section 3.2, misprint corrected: a sum of displacements). It
+    contracts in the steps of the vector muscles (section 3.1): each part finds the point where these have brought it so
+    far. As the sum of parts is linear in p, the mean over the parts, ``found``, takes the place of p in it. In height
     the way to the ellipse is that of the point at rest: lips that smile stay where they are while they press. Before
     that, lips that the vector muscles have stretched are thinner. The vertices at the patch's edge and beyond follow
-    the surface there. ``points (V + 144, 3)`` m are moved in place.
+    the surface there.
+
+    Args:
+        tables: those of the face.
+        values: the pose.
+        found: ``(144, 3)`` m, at which x pucker, press and roll find each control point; :func:`as_they_lie` where
+            nothing moves them by steps.
+        points: ``(V + 144, 3)`` m, moved in place.
     """
     levels = contraction_levels(tables, values)
     control = points[tables.skin_count :]
@@ -133,9 +144,9 @@ def contract(tables: LipTables, values: Floats, points: Floats) -> None:
     rows = control.reshape(COLUMNS, ROWS, 3)
     away = rows - rows[:, RED].mean(axis=1, keepdims=True, dtype=np.float32)
     moved = (-thinner * np.array(THINNED)[:, None] * away * np.array([0, 1, 1], np.float32)).reshape(-1, 3)
-    for level, shift, target, pull in zip(levels, tables.shift, tables.target, tables.pull, strict=True):
+    for level, shift, target, pull, x in zip(levels, tables.shift, tables.target, tables.pull, found.T, strict=True):
         moved += level * shift
-        there = np.column_stack([control[:, 0], tables.control_rest[:, 1]])
+        there = np.column_stack([x, tables.control_rest[:, 1]])
         moved[:, :2] += level * pull[:, None] * (target - there)
     points[tables.patch[tables.rim]] += _mixed(moved, tables.controls[tables.rim], tables.weight[tables.rim])
     points[tables.skirt] += _mixed(moved, tables.skirt_index, tables.skirt_weight)
@@ -147,11 +158,37 @@ def thinning(width: np.float32, rest: float) -> np.float32:
     return np.float32(max(0.0, 1.0 - rest / max(float(width), rest)))
 
 
+def as_they_lie(tables: LipTables, points: Floats) -> Floats:
+    """``(144, 3)`` m: the x of the control points among ``points (V + 144, 3)`` m, for each of the contractions."""
+    return np.repeat(points[tables.skin_count :, :1], CONTRACTIONS, axis=1)
+
+
+def slice_steps(tables: LipTables, values: Floats, step: float, shares: Floats) -> None:
+    """Write to ``shares (S + 1, 3)`` which part of each contraction acts in each of S steps of at most ``step``.
+
+    The last row, what acts after them, is 0. Of what does not contract at all, all acts in the first.
+    """
+    ends = np.minimum(step * np.arange(len(shares))[:, None], values[tables.parameters])
+    parts = np.diff(np.stack([_levels(tables, pucker, press) for pucker, press in ends]), axis=0)
+    whole = parts.sum(axis=0)
+    shares[:] = 0.0
+    shares[0] = 1.0
+    np.divide(parts, whole, out=shares[:-1], where=whole > 0.0)
+
+
 def contraction_levels(tables: LipTables, values: Floats) -> Floats:
     """``(3,)``: how far pucker, press and roll are contracted; only a strong press rolls the lips in."""
-    pucker, press = values[tables.parameters]
-    beyond = max(0.0, (press - tables.roll_from) / (1.0 - tables.roll_from))
-    return np.array([pucker, press, beyond * beyond], np.float32)
+    return _levels(tables, *values[tables.parameters])
+
+
+def _levels(tables: LipTables, pucker: float, press: float) -> Floats:
+    return np.array([pucker, press, rolled(press, tables.roll_from)], np.float32)
+
+
+def rolled(press: float, start: float) -> np.float32:
+    """How far a press rolls the lips in that begins to do so at ``start``."""
+    beyond = max(0.0, (press - start) / (1.0 - start))
+    return np.float32(beyond * beyond)
 
 
 def surface(tables: LipTables, points: Floats) -> None:

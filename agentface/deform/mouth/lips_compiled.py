@@ -16,6 +16,7 @@ _CONTROLS = COLUMNS * ROWS
 _ZERO, _HALF, _ONE = np.float32(0.0), np.float32(0.5), np.float32(1.0)
 _THINNED = np.array(THINNED)
 _thinning = kernel(error_model="numpy")(lips.thinning)
+_rolled = kernel(error_model="numpy")(lips.rolled)
 
 
 @kernel(error_model="numpy", inline="always")
@@ -34,7 +35,28 @@ def _mean(controls: Indices, weights: Floats, row: int, count: int, moved: Float
 
 
 @kernel(error_model="numpy")
-def contract(tables: LipTables, values: Floats, points: Floats) -> None:
+def slice_steps(tables: LipTables, values: Floats, step: float, shares: Floats) -> None:
+    """Which part of each contraction acts in each step; as its twin."""
+    pucker, press = values[tables.parameters[0]], values[tables.parameters[1]]
+    roll = _rolled(press, tables.roll_from)
+    shares[:] = _ZERO
+    for index in range(shares.shape[0] - 1):
+        start, end = np.float32(index * step), np.float32((index + 1) * step)
+        shares[index, 0] = _part(min(start, pucker), min(end, pucker), pucker, index)
+        shares[index, 1] = _part(min(start, press), min(end, press), press, index)
+        before, after = _rolled(min(start, press), tables.roll_from), _rolled(min(end, press), tables.roll_from)
+        shares[index, 2] = _part(before, after, roll, index)
+
+
+@kernel(error_model="numpy")
+def _part(before: float, after: float, whole: float, index: int) -> Any:
+    if whole == _ZERO:
+        return _ONE if index == 0 else _ZERO
+    return (after - before) / whole
+
+
+@kernel(error_model="numpy")
+def contract(tables: LipTables, values: Floats, found: Floats, points: Floats) -> None:
     """Orbicularis oris moves the control points and the skin at the patch's edge; as its twin."""
     pucker, press = values[tables.parameters[0]], values[tables.parameters[1]]
     start = tables.skin_count
@@ -42,16 +64,15 @@ def contract(tables: LipTables, values: Floats, points: Floats) -> None:
     thinner = _thinning(left - right, tables.width) * max(_ZERO, _ONE - pucker - press)
     if pucker == _ZERO and press == _ZERO and thinner == _ZERO:
         return
-    beyond = max(0.0, (press - tables.roll_from) / (1.0 - tables.roll_from))
-    roll = np.float32(beyond * beyond)
+    roll = _rolled(press, tables.roll_from)
     moved = np.empty((_CONTROLS, 3), np.float32)
     for i in range(_CONTROLS):
         row = i % ROWS
         red, other, share = start + i - row + RED[0], start + i - row + RED[1], thinner * _THINNED[row]
-        x, y, home = points[start + i, 0], points[start + i, 1], tables.control_rest[i, 1]
-        across = pucker * (tables.shift[0, i, 0] + tables.pull[0, i] * (tables.target[0, i, 0] - x))
-        across += press * (tables.shift[1, i, 0] + tables.pull[1, i] * (tables.target[1, i, 0] - x))
-        across += roll * (tables.shift[2, i, 0] + tables.pull[2, i] * (tables.target[2, i, 0] - x))
+        y, home = points[start + i, 1], tables.control_rest[i, 1]
+        across = pucker * (tables.shift[0, i, 0] + tables.pull[0, i] * (tables.target[0, i, 0] - found[i, 0]))
+        across += press * (tables.shift[1, i, 0] + tables.pull[1, i] * (tables.target[1, i, 0] - found[i, 1]))
+        across += roll * (tables.shift[2, i, 0] + tables.pull[2, i] * (tables.target[2, i, 0] - found[i, 2]))
         up = pucker * (tables.shift[0, i, 1] + tables.pull[0, i] * (tables.target[0, i, 1] - home))
         up += press * (tables.shift[1, i, 1] + tables.pull[1, i] * (tables.target[1, i, 1] - home))
         up += roll * (tables.shift[2, i, 1] + tables.pull[2, i] * (tables.target[2, i, 1] - home))

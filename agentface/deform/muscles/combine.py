@@ -8,6 +8,7 @@ are written in numpy as the papers say; :class:`Combiner` hands a schedule to a 
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from typing import Any, Literal, TypeAlias
 
 import numpy as np
@@ -24,6 +25,7 @@ STEP = 0.2
 """The unit of contraction of ``parallel``, delta_c (Bui, Heylen, Nijholt, section 3.1)."""
 
 Points: TypeAlias = npt.NDArray[np.floating[Any]]
+_NOBODY: Floats = np.zeros((0, 0), np.float32)
 
 
 def parallel(rest: Points, muscles: MuscleSet, contractions: Points) -> Doubles:
@@ -37,13 +39,20 @@ def parallel(rest: Points, muscles: MuscleSet, contractions: Points) -> Doubles:
     Returns:
         float64 ``(V, 3)`` m, the moved vertices.
     """
+    *_, moved = parallel_way(rest, muscles, contractions)
+    return moved
+
+
+def parallel_way(rest: Points, muscles: MuscleSet, contractions: Points) -> Iterator[Doubles]:
+    """The vertices before each step of :func:`parallel`, and after the last."""
     moved = np.asarray(rest, dtype=np.float64)
     left = np.asarray(contractions, dtype=np.float64)
+    yield moved
     while (left > NOTHING).any():
         part = np.minimum(left, STEP)
         moved = summed(moved, muscles, part)
         left = left - part
-    return moved
+        yield moved
 
 
 def sequential(rest: Points, muscles: MuscleSet, contractions: Points) -> Doubles:
@@ -76,6 +85,9 @@ class Combiner:
         method: ``"parallel"``, ``"sequential"`` or ``"summed"``.
         compiled: False for the numpy form, which starts at once and takes a hundred times as long a frame.
 
+    Attributes:
+        steps: S, how many steps the schedule has.
+
     Raises:
         InvalidValueError: when the vertices are not finite or do not match the muscles.
         UnknownNameError: for another method.
@@ -91,6 +103,7 @@ class Combiner:
             raise UnknownNameError("way to combine muscles", method, METHODS)
         self.muscles = muscles
         self.method = method
+        self.steps: int = {"parallel": math.ceil(1.0 / STEP), "sequential": len(muscles), "summed": 1}[method]
         self._rest = rest
         self._compiled = compiled
         if not compiled:
@@ -98,19 +111,23 @@ class Combiner:
         from agentface.deform.muscles import blocks, combine_compiled
 
         self._blocks = blocks.pack(rest, muscles)
-        count = len(muscles)
         self._step = STEP if method == "parallel" else math.inf
-        shape = {"parallel": math.ceil(1.0 / STEP), "sequential": count, "summed": 1}[method]
-        self._parts = np.zeros((shape, count), dtype=np.float32)
-        self._levels = np.zeros(count, dtype=np.float64)
+        self._parts = np.zeros((self.steps, len(muscles)), dtype=np.float32)
+        self._levels = np.zeros(len(muscles), dtype=np.float64)
         self._kernels = combine_compiled
 
-    def apply(self, contractions: Points, out: Floats) -> None:
+    def apply(self, contractions: Points, out: Floats, shares: Floats = _NOBODY, found: Floats = _NOBODY) -> None:
         """Writes the moved vertices to ``out``; where no muscle acts they are the rest vertices, bit for bit.
+
+        Muscles of another kind may contract in the same steps: they want to know where each of their parts finds the
+        vertices that are theirs, the last K.
 
         Args:
             contractions: ``(M,)`` in 0..1.
             out: float32 ``(V, 3)`` in C order, m.
+            shares: float32 ``(S + 1, J)``, which part of each of J others acts in each step, and which after the last;
+                they sum to 1.
+            found: float32 ``(K, J)`` m, written: the x at which they find these vertices, the mean over their parts.
 
         Raises:
             InvalidValueError: for a wrong shape or a contraction outside 0..1, NaN included; ``out`` is untouched.
@@ -121,20 +138,28 @@ class Combiner:
         if contractions.shape != (len(self.muscles),):
             raise InvalidValueError("contractions", f"shape {(len(self.muscles),)}", contractions.shape)
         if not self._compiled:
-            self._apply_reference(np.asarray(contractions, dtype=np.float64), out)
+            self._apply_reference(np.asarray(contractions, dtype=np.float64), out, shares, found)
             return
         schedule = self._kernels.spread if self.method == "sequential" else self._kernels.slice_steps
         self._levels[:] = contractions
         bad = schedule(self._levels, self._step, self._parts)
         if bad >= 0:
             raise self._refusal(bad, contractions)
-        self._kernels.contract(self._rest, self._blocks, self._parts, out)
+        self._kernels.contract(self._rest, self._blocks, self._parts, shares, found, out)
 
-    def _apply_reference(self, contractions: Doubles, out: Floats) -> None:
+    def _apply_reference(self, contractions: Doubles, out: Floats, shares: Floats, found: Floats) -> None:
         bad = np.flatnonzero(~((contractions >= 0.0) & (contractions <= 1.0)))
         if len(bad):
             raise self._refusal(int(bad[0]), contractions)
-        out[:] = REFERENCE[self.method](self._rest, self.muscles, contractions)
+        if self.method == "parallel":
+            way = list(parallel_way(self._rest, self.muscles, contractions))
+        else:
+            way = [REFERENCE[self.method](self._rest, self.muscles, contractions)]
+        out[:] = way[-1]
+        first = len(out) - len(found)
+        found[:] = 0.0
+        for step, share in enumerate(shares):
+            found += share * way[min(step, len(way) - 1)][first:, :1]
 
     def _refusal(self, muscle: int, contractions: Points) -> InvalidValueError:
         name = self.muscles.names[muscle]

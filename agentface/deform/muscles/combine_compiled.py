@@ -56,18 +56,24 @@ def spread(contractions: Doubles, step: float, parts: Floats) -> int:
 
 
 @kernel()
-def contract(rest: Floats, blocks: Blocks, parts: Floats, out: Floats) -> None:
-    """Moves the vertices, ``rest (V, 3)`` m, by a schedule of contractions ``parts (S, M)``, to ``out (V, 3)`` m."""
+def contract(rest: Floats, blocks: Blocks, parts: Floats, shares: Floats, found: Floats, out: Floats) -> None:
+    """Moves the vertices, ``rest (V, 3)`` m, by a schedule of contractions ``parts (S, M)``, to ``out (V, 3)`` m.
+
+    ``shares (S + 1, J)`` and ``found (K, J)`` m are those of :meth:`.combine.Combiner.apply`.
+    """
     still, moved = rest.ravel(), out.ravel()
     for index in range(still.shape[0]):
         moved[index] = still[index]
+    others = rest.shape[0] - found.shape[0]
+    for row in range(found.shape[0]):
+        found[row] = rest[others + row, 0]
     whole = np.zeros(parts.shape[1], dtype=np.float32)
     acts = np.zeros(parts.shape[1], dtype=np.int64)
     for step in range(parts.shape[0]):
         for muscle in range(parts.shape[1]):
             whole[muscle] += parts[step, muscle]
             acts[muscle] |= parts[step, muscle] > _ZERO
-    lanes = np.empty(3 * LANES, dtype=np.float32)
+    lanes = np.empty((3 + parts.shape[0]) * LANES, dtype=np.float32)
     pairs = np.empty(parts.shape[1] + 1, dtype=np.int32)
     muscles = np.empty(parts.shape[1] + 1, dtype=np.int32)
     bounds = np.empty(parts.shape[1] + 1, dtype=np.float32)
@@ -88,6 +94,18 @@ def contract(rest: Floats, blocks: Blocks, parts: Floats, out: Floats) -> None:
                 out[row, 0] = lanes[lane]
                 out[row, 1] = lanes[LANES + lane]
                 out[row, 2] = lanes[2 * LANES + lane]
+                if row >= others:
+                    _find(lanes[lane::LANES], shares, found[row - others])
+
+
+@kernel()
+def _find(lane: Floats, shares: Floats, found: Floats) -> None:
+    """The mean x of a vertex whose ``lane`` is its x, y, z at last and its x before each step."""
+    for other in range(found.shape[0]):
+        x = shares[-1, other] * lane[0]
+        for step in range(shares.shape[0] - 1):
+            x += shares[step, other] * lane[3 + step]
+        found[other] = x
 
 
 @kernel(fastmath=True, error_model="numpy")
@@ -105,6 +123,7 @@ def contract_block(
 ) -> None:
     """Writes to ``lanes`` where the schedule takes one block by the first ``count`` of ``pairs``, nearest first.
 
+    Behind x, y and z come the x before each step.
     A muscle that the block has not travelled far enough to meet is left out, and those behind it with it. The radial
     fall-off needs no branch: of its rising and falling argument the larger is the one that holds.
     """
@@ -113,6 +132,7 @@ def contract_block(
     px, py, pz = hx, hy, hz
     travel = _ZERO
     for step in range(parts.shape[0]):
+        store(lanes, (3 + step) * LANES, px)
         dx, dy, dz = splat(_ZERO), splat(_ZERO), splat(_ZERO)
         for index in range(count):
             if bounds[index] > travel:

@@ -97,7 +97,7 @@ class _Stage:
 
     def _points(self, pose: FacePose) -> Floats:
         points = np.concatenate([self._model.vertices, self._tables.control_rest])
-        lips.contract(self._tables, pose.array, points)
+        lips.contract(self._tables, pose.array, lips.as_they_lie(self._tables, points), points)
         lips.surface(self._tables, points)
         return points
 
