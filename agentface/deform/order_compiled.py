@@ -21,11 +21,11 @@ from agentface.deform.geometry import FaceArrays
 from agentface.deform.mouth import contact_compiled as contact  # noqa: F401
 from agentface.deform.mouth import jaw_compiled as jaw  # noqa: F401
 from agentface.deform.mouth import lips_compiled as lips
+from agentface.deform.mouth.lips import CONTRACTIONS
 from agentface.deform.muscles import combine_compiled as combine
 from agentface.deform.muscles import limits_compiled as limits  # noqa: F401
 from agentface.deform.muscles import squash_compiled as squash  # noqa: F401
 from agentface.deform.muscles import volumes_compiled as volumes  # noqa: F401
-from agentface.deform.mouth.lips import CONTRACTIONS
 from agentface.deform.muscles.combine import STEP
 from agentface.deform.order import Stage
 from agentface.deform.tables import FaceTables

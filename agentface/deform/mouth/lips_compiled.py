@@ -49,7 +49,7 @@ def slice_steps(tables: LipTables, values: Floats, step: float, shares: Floats) 
 
 
 @kernel(error_model="numpy")
-def _part(before: float, after: float, whole: float, index: int) -> Any:
+def _part(before: Any, after: Any, whole: Any, index: int) -> Any:
     if whole == _ZERO:
         return _ONE if index == 0 else _ZERO
     return (after - before) / whole

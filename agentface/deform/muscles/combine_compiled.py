@@ -61,12 +61,8 @@ def contract(rest: Floats, blocks: Blocks, parts: Floats, shares: Floats, found:
 
     ``shares (S + 1, J)`` and ``found (K, J)`` m are those of :meth:`.combine.Combiner.apply`.
     """
-    still, moved = rest.ravel(), out.ravel()
-    for index in range(still.shape[0]):
-        moved[index] = still[index]
     others = rest.shape[0] - found.shape[0]
-    for row in range(found.shape[0]):
-        found[row] = rest[others + row, 0]
+    _stay(rest, found, out)
     whole = np.zeros(parts.shape[1], dtype=np.float32)
     acts = np.zeros(parts.shape[1], dtype=np.int64)
     for step in range(parts.shape[0]):
@@ -96,6 +92,16 @@ def contract(rest: Floats, blocks: Blocks, parts: Floats, shares: Floats, found:
                 out[row, 2] = lanes[2 * LANES + lane]
                 if row >= others:
                     _find(lanes[lane::LANES], shares, found[row - others])
+
+
+@kernel()
+def _stay(rest: Floats, found: Floats, out: Floats) -> None:
+    still, moved = rest.ravel(), out.ravel()
+    for index in range(still.shape[0]):
+        moved[index] = still[index]
+    others = rest.shape[0] - found.shape[0]
+    for row in range(found.shape[0]):
+        found[row] = rest[others + row, 0]
 
 
 @kernel()

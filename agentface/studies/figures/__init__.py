@@ -12,6 +12,7 @@ from agentface.deform.protocol import DEFAULT_DEFORMER
 FIGURES: dict[str, str] = {
     "lips": "Figures 2 and 6: the lips' surface and its control points, and orbicularis oris",
     "combination": "Figures 4 and 5: one, two and three muscles, combined in three ways",
+    "parallel_steps": "orbicularis oris and oculi after the vector muscles' steps and in them, and the artists' shapes",
     "eyes": "Figures 7 and 8: closing one eye, closing both; and the squeeze that closes",
     "jaw": "the jaw's opening, from closed to wide",
     "tongue": "the tongue, out of the mouth and in it",
