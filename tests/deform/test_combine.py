@@ -138,6 +138,43 @@ def test_nothing_moves_where_no_muscle_reaches():
     assert out.tobytes() == rig().vertices.tobytes()
 
 
+OTHERS = 300
+"""Vertices at the end of the rig that belong to muscles of another kind."""
+
+
+def found_by(method, contractions, shares, *, compiled=True):
+    face, found = rig(), np.full((OTHERS, shares.shape[1]), np.nan, np.float32)
+    out = np.empty_like(face.vertices)
+    by = combiner(method) if compiled else Combiner(face.vertices, face.muscles, method, compiled=False)
+    by.apply(contractions, out, np.ascontiguousarray(shares, np.float32), found)
+    return found, out[-OTHERS:, 0]
+
+
+@settings(max_examples=15, deadline=None)
+@given(contractions=CONTRACTIONS, step=st.integers(0, 5))
+def test_what_acts_in_a_step_finds_the_vertices_where_the_steps_before_have_brought_them(contractions, step):
+    shares = np.zeros((6, 2))
+    shares[step, 0] = 1.0
+    shares[:, 1] = [0.1, 0.2, 0.0, 0.3, 0.15, 0.25]
+    found, end = found_by("parallel", contractions, shares)
+    ways = [REFERENCE["parallel"](rig().vertices, rig().muscles, np.minimum(contractions, k * STEP)) for k in range(6)]
+    there = np.stack([way[-OTHERS:, 0] for way in ways])
+    np.testing.assert_allclose(found, (shares.T @ there).T, atol=1e-6)
+    np.testing.assert_allclose(there[-1], end, atol=1e-6)
+    twin, _ = found_by("parallel", contractions, shares, compiled=False)
+    np.testing.assert_allclose(found, twin, atol=1e-6)
+
+
+@pytest.mark.parametrize("method", METHODS)
+@pytest.mark.parametrize("compiled", [True, False])
+def test_what_acts_after_the_last_step_finds_the_vertices_where_they_end(method, compiled):
+    shares = np.zeros((combiner(method).steps + 1, 1))
+    shares[-1] = 1.0
+    found, end = found_by(method, np.linspace(0, 1, COUNT), shares, compiled=compiled)
+    assert np.abs(found[:, 0] - rig().vertices[-OTHERS:, 0]).max() > 1e-3
+    np.testing.assert_allclose(found[:, 0], end, atol=1e-7)
+
+
 def two_muscles():
     """Two muscles side by side that pull the same vertices up, and the row of vertices between them."""
     points = np.column_stack([np.zeros(50), np.linspace(-0.02, 0.045, 50), np.zeros(50)]).astype(np.float32)

@@ -187,6 +187,38 @@ def test_the_press_rolls_the_lips_in_only_when_strong(face):
     np.testing.assert_allclose([level[2] for level in levels], [0, 0, 0.25, 1], atol=1e-6)
 
 
+@given(st.floats(0, 1, width=32), st.floats(0, 1, width=32))
+def test_the_parts_of_a_contraction_are_those_of_steps_of_a_fifth(pucker, press):
+    pose = FacePose.of(orbicularis_oris_pucker=pucker, orbicularis_oris_press=press).array
+    both = np.full((2, 6, lips.CONTRACTIONS), np.nan, np.float32)
+    for module, shares in zip((lips, compiled), both, strict=True):
+        module.slice_steps(TABLES["amber"], pose, 0.2, shares)
+        np.testing.assert_allclose(shares.sum(axis=0), 1.0, atol=1e-5)
+        assert not shares[-1].any()
+        assert shares.min() >= -1e-6
+        if pucker > 1e-3:
+            expected = [max(0.0, min(0.2, pucker - 0.2 * step)) / pucker for step in range(5)]
+            np.testing.assert_allclose(shares[:5, 0], expected, atol=1e-4)
+        if press > TABLES["amber"].roll_from + 1e-3:
+            assert not shares[:2, 2].any(), "the first two steps press and do not roll"
+    np.testing.assert_allclose(*both, atol=1e-4)
+
+
+@settings(max_examples=20)
+@given(st.floats(0, 1), st.floats(0, 1), st.floats(-0.01, 0.01))
+def test_lips_found_further_out_are_drawn_in_from_there(pucker, press, aside):
+    pose = FacePose.of(orbicularis_oris_pucker=pucker, orbicularis_oris_press=press).array
+    for face, tables in TABLES.items():
+        points = [at_rest(face), at_rest(face)]
+        found = lips.as_they_lie(tables, points[0])
+        lips.contract(tables, pose, found, points[0])
+        lips.contract(tables, pose, found + np.float32(aside), points[1])
+        levels = lips.contraction_levels(tables, pose)
+        gap = (points[1] - points[0])[tables.skin_count :]
+        np.testing.assert_allclose(gap[:, 0], -aside * (levels[:, None] * tables.pull).sum(0), atol=1e-6)
+        assert not gap[:, 1:].any()
+
+
 @pytest.mark.parametrize(
     ("muscle", "shapes", "least"),
     [
