@@ -27,10 +27,9 @@ class GeometricDeformer:
     """The geometric face: a pose has one shape, whatever came before.
 
     The vector muscles move the skin and the control points of the lips, combined as ``combine`` says, and gather
-    volumes, as far as each region allows; orbicularis oris, in the same steps, the lids, and the jaw, which carries all
-    that along;
-    then the lips' surface takes its vertices, lips and teeth are kept apart, no skin turns over
-    (:mod:`agentface.deform.order`), and the skin gets its wrinkles, normals and neck
+    volumes, as far as each region allows; orbicularis oris contracts in the same steps; then the lids, and the jaw,
+    which carries all that along; then the lips' surface takes its vertices, lips and teeth are kept apart, no skin
+    turns over (:mod:`agentface.deform.order`), and the skin gets its wrinkles, normals and neck
     (:mod:`agentface.deform.finish.order`). ``compiled=False`` takes the numpy forms, the same to 1e-6 m: ready at once,
     slow a frame.
 

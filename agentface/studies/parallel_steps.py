@@ -24,6 +24,7 @@ from agentface.deform.mouth import lips
 from agentface.deform.muscles.combine import STEP, summed
 from agentface.deform.muscles.vector_muscle import NOTHING
 from agentface.deform.order import Stage
+from agentface.facs.action_units import load_action_units
 from agentface.head.model import HeadModel
 from agentface.parameters import VECTOR_MUSCLES, FacePose, indices_of
 from agentface.studies.calibration.agreement import PART_OF_PEAK, agreement
@@ -104,6 +105,12 @@ CASES = tuple(
 """What is compared: a squeeze of a half shuts the eye, so its artists' blink is whole."""
 
 
+def combined_units() -> tuple[Case, ...]:
+    """The action units of orbicularis oris and vector muscles of which the artists drew the whole, not the parts."""
+    units = load_action_units()
+    return tuple(Case(f"AU {number}", units[number].muscles, units[number].shapes) for number in (23, 24))
+
+
 @dataclass(frozen=True, slots=True)
 class Outcome:
     """A case, a way: how far it is from ``once`` and from the sum of the artists' shapes.
@@ -145,7 +152,7 @@ def table(models: dict[str, HeadModel]) -> str:
         "|" + "---|" * 10,
     ]
     for face, model in models.items():
-        for case in CASES:
+        for case in (*CASES, *combined_units()):
             ways = compare(model, case)
             apart = [f"{ways[way].largest_mm:.2f} ({ways[way].mean_mm:.2f})" for way in WAYS[1:]]
             errors, cosines = ([f"{getattr(ways[way], of):.2f}" for way in WAYS] for of in ("error_mm", "cosine"))
