@@ -112,7 +112,7 @@ def combined_units() -> tuple[Case, ...]:
 
 
 @dataclass(frozen=True, slots=True)
-class Outcome:
+class Comparison:
     """A case, a way: how far it is from ``once`` and from the sum of the artists' shapes.
 
     Attributes:
@@ -128,19 +128,19 @@ class Outcome:
     cosine: float
 
 
-def compare(model: HeadModel, case: Case) -> dict[Way, Outcome]:
+def compare(model: HeadModel, case: Case) -> dict[Way, Comparison]:
     """The three ways of a case on a face."""
     artists = case.artists(model)
     far = np.linalg.norm(artists, axis=1)
     chosen = far > PART_OF_PEAK * far.max()
-    moved = {way: Face(model, way).at(case.pose).vertices - model.vertices for way in WAYS}
+    moved = {way: SteppedFace(model, way).at(case.pose).vertices - model.vertices for way in WAYS}
     some = np.linalg.norm(moved["once"], axis=1) > 1e-4
-    result: dict[Way, Outcome] = {}
+    result: dict[Way, Comparison] = {}
     for way, field in moved.items():
         apart = 1e3 * np.linalg.norm(field - moved["once"], axis=1)
         error = 1e3 * np.linalg.norm(field - artists, axis=1)[chosen]
         cosine = agreement(model, field, artists).cosine
-        result[way] = Outcome(float(apart.max()), float(apart[some].mean()), float(error.mean()), cosine)
+        result[way] = Comparison(float(apart.max()), float(apart[some].mean()), float(error.mean()), cosine)
     return result
 
 
@@ -160,7 +160,7 @@ def table(models: dict[str, HeadModel]) -> str:
     return "\n".join(rows)
 
 
-class Face:
+class SteppedFace:
     """The geometric face in numpy, with its steps taken one by one; ``steps`` makes what the deformer makes."""
 
     def __init__(self, model: HeadModel, way: Way) -> None:

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from agentface.parameters import COUNT, FacePose
-from agentface.studies.parallel_steps import CASES, WAYS, Face, combined_units, compare, table
+from agentface.studies.parallel_steps import CASES, WAYS, SteppedFace, combined_units, compare, table
 from tests.deform.conflicts import Edges, ranges
 from tests.heads import deformer_of, head_model
 
@@ -26,7 +26,7 @@ def face(request):
 
 @cache
 def stepped(face, way):
-    return Face(head_model(face), way)
+    return SteppedFace(head_model(face), way)
 
 
 def poses(count, seed):

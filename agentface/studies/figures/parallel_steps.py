@@ -7,7 +7,7 @@ from pathlib import Path
 
 from agentface.head.model import HeadModel, load_model
 from agentface.parameters import FacePose
-from agentface.studies.parallel_steps import CASES, WAYS, Face, compare
+from agentface.studies.parallel_steps import CASES, WAYS, SteppedFace, compare
 from agentface.view.camera import Camera
 from agentface.view.contact_sheet import png, sheet
 from agentface.view.renderer import Renderer
@@ -20,7 +20,7 @@ _MOUTH, _EYES = 1.45, 2.2  # eye separations that a picture covers
 def figures(face: str | Path) -> dict[str, bytes]:
     """``parallel_steps.png``: a row a view, the three ways of each case and the sum of the artists' shapes."""
     model = load_model(face, asymmetry=0.0)
-    faces, renderer = {way: Face(model, way) for way in WAYS}, Renderer(model)
+    faces, renderer = {way: SteppedFace(model, way) for way in WAYS}, Renderer(model)
     mouth, eyes = _camera(model, eyes=False, turn_deg=0.0), _camera(model, eyes=True, turn_deg=0.0)
     views = [(name, eyes if "squeeze" in name else mouth) for name in SHOWN]
     views.insert(1, (views[0][0], _camera(model, eyes=False, turn_deg=40.0)))

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from agentface.studies.figures import lips
+from agentface.studies.figures import lips, parallel_steps
 
 pytestmark = [pytest.mark.gl, pytest.mark.slow]
 
@@ -24,3 +24,16 @@ def test_the_figures_show_the_surface_and_its_contractions(monkeypatch):
     for row in rows:
         at_rest, half, full = (row[:, 12 + 102 * i : 102 + 102 * i] for i in range(3))
         assert np.abs(full - at_rest).mean() > np.abs(half - at_rest).mean() > 0.3
+
+
+def test_the_figure_of_the_steps_shows_three_ways_and_the_artists(monkeypatch):
+    monkeypatch.setattr(parallel_steps, "_SIZE", (90, 78))
+    (name, content), *others = parallel_steps.figures("amber").items()
+    assert (name, others) == ("parallel_steps.png", [])
+    drawn = np.asarray(Image.open(BytesIO(content)).convert("RGB"), int)
+    for row in range(4):
+        panels = (drawn[12 + 142 * row : 90 + 142 * row, 12 + 102 * i : 102 + 102 * i] for i in range(4))
+        once, steps, mutual, artists = panels
+        assert np.abs(artists - steps).mean() > 1.5 * np.abs(steps - mutual).mean() > 0.1
+        # a squeeze is the same
+        assert (np.abs(steps - once).mean() > 1.0) == (row < 3)
