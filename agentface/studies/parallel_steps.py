@@ -193,7 +193,8 @@ class SteppedFace:
 
     def shown(self, values: Floats, vertices: Floats) -> FaceGeometry:
         """The face whose skin is at ``vertices (V, 3)`` m, ready to be drawn."""
-        geometry = FaceGeometry.at_rest(vertices, self._model.normals, len(self._model.trains))
+        geometry = FaceGeometry.at_rest(self._model)
+        geometry.vertices[:] = vertices
         first, last = FinishStage.SMOOTH_NORMALS, FinishStage.NECK
         last_part.finish(first, last, self._tables.finish, values, geometry.arrays())
         return geometry
