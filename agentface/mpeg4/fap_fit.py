@@ -137,7 +137,9 @@ def _single_poses() -> Floats:
 def _sides(meter: FapMeter) -> tuple[npt.NDArray[np.bool_], ...]:
     """``(N + 2,)`` for the left and the right: which features are read on that side."""
     readings = meter.readings
-    aside = np.where(readings.kind == Kind.BONE, 0.0, meter.model.vertices[readings.vertex, 0])
+    skin = np.isin(readings.kind, (Kind.SKIN, Kind.IN_JAW))
+    aside = np.zeros(len(skin))
+    aside[skin] = meter.model.vertices[readings.vertex[skin], 0]
     middle = 0.002  # m
     left, right = np.append(aside > middle, [True, False]), np.append(aside < -middle, [False, True])
     return left, right

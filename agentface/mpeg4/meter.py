@@ -12,19 +12,11 @@ from agentface.deform.geometry import FaceArrays, FaceGeometry
 from agentface.errors import InvalidValueError
 from agentface.head.model import HeadModel
 from agentface.kernel import can_compile
-from agentface.mpeg4.faps import FAP_COUNT, LOW_LEVEL, Fap
+from agentface.mpeg4.fap_readings import EYES, HEAD, fap_readings
+from agentface.mpeg4.faps import FAP_COUNT, LOW_LEVEL
 from agentface.mpeg4.fapu import fapu
 from agentface.mpeg4.feature_points import feature_points
-from agentface.mpeg4.readings import Kind, Readings, read
-
-_AXIS = {"left": 0, "right": 0, "up": 1, "down": 1, "forward": 2}
-_SIGN = {"left": 1.0, "up": 1.0, "forward": 1.0, "right": -1.0, "down": -1.0}
-JAW = (3, 14, 15)
-"""Read off the jaw's bone: on the skin of the chin, muscles would open the jaw, and the jaw thrust itself."""
-CHIN = 18
-"""Read in the jaw's frame: elsewhere, every opened jaw would draw the chin down."""
-EYES = (23, 24, 25, 26)
-HEAD = (48, 49, 50)
+from agentface.mpeg4.readings import Readings, read
 
 
 class FapMeter:
@@ -32,7 +24,8 @@ class FapMeter:
 
     Decisions, where the standard has a face of points and not of flesh: skin is read below its wrinkles; the jaw's
     FAPs 3, 14 and 15 are those of the bone, 3 the descent of 2.1 carried by it, 14 and 15 the way of its hinge; FAP 18
-    is the chin's way in the jaw's frame; eyes and head are read off their rotations.
+    is the chin's way in the jaw's frame, and so are those of the tongue (43 to 46); 47 is the angle from the tongue's
+    middle up to its borders; a pupil at rest is a third of the iris; eyes and head are read off their rotations.
 
     Args:
         model: the face.
@@ -43,10 +36,10 @@ class FapMeter:
 
     def __init__(self, model: HeadModel, *, compiled: bool = True) -> None:
         self.model, self.units, self.points = model, fapu(model), feature_points(model)
-        self.faps = tuple(fap for fap in LOW_LEVEL if fap.number in JAW or _reads_skin(model, fap))
+        self.faps = tuple(fap for fap in LOW_LEVEL if fap.number not in (*EYES, *HEAD))
         """Those that are read off points, in the order of their numbers."""
         self.columns = np.array([fap.number - 1 for fap in self.faps])
-        self.readings = _readings(model, self.faps)
+        self.readings = fap_readings(model, self.faps)
         self._read: Callable[..., None] = _read_faces
         if compiled and can_compile():
             from agentface.mpeg4 import meter_compiled
@@ -75,31 +68,6 @@ class FapMeter:
 
 def _flat(array: Floats, leading: int, count: int) -> Floats:
     return array.reshape(count, *array.shape[leading:])
-
-
-def _reads_skin(model: HeadModel, fap: Fap) -> bool:
-    row = model.feature_points[fap.points[0]]
-    if row.absent is not None and fap.positive in _AXIS:
-        raise InvalidValueError(f"feature point {fap.points[0]}", f"a point that {model.name} has", "none", row.absent)
-    return row.vertex is not None and row.mesh == "skin"
-
-
-def _readings(model: HeadModel, faps: tuple[Fap, ...]) -> Readings:
-    units, points = fapu(model), feature_points(model)
-    bone = np.array([points["2.1"].position, model.jaw.pivot], np.float64)
-    rows: list[tuple[int, int, int, float, float]] = []
-    for fap in faps:
-        axis, scale = _AXIS[fap.positive], _SIGN[fap.positive] / units.of(fap.unit)
-        if fap.number in JAW:
-            which = JAW.index(fap.number) > 0
-            rows.append((Kind.BONE, int(which), axis, scale, bone[int(which), axis]))
-        else:
-            point = points[fap.points[0]]
-            kind = Kind.IN_JAW if fap.number == CHIN else Kind.SKIN
-            rows.append((kind, point.vertex, axis, scale, float(point.position[axis])))
-    kinds, vertices, axes, scales, rests = zip(*rows, strict=True)
-    of_kind, vertex, axis_of = (np.array(column, np.int32) for column in (kinds, vertices, axes))
-    return Readings(of_kind, vertex, axis_of, np.array(scales, np.float64), np.array(rests, np.float64), bone)
 
 
 def _read_faces(readings: Readings, faces: FaceArrays, out: Doubles) -> None:

@@ -7,10 +7,11 @@ import pytest
 
 from agentface.deform.geometry import FaceGeometry
 from agentface.errors import InvalidValueError
+from agentface.mpeg4.fap_readings import CHIN, EYES, HEAD, JAW
 from agentface.mpeg4.faps import FAPS, LOW_LEVEL, fap
 from agentface.mpeg4.fapu import fapu
 from agentface.mpeg4.feature_points import feature_points
-from agentface.mpeg4.meter import CHIN, EYES, HEAD, JAW, FapMeter
+from agentface.mpeg4.meter import FapMeter
 from agentface.parameters import HIGH, LOW, FacePose, parameter
 from agentface.resources import face_names
 from tests.heads import deformer_of, head_model
@@ -27,7 +28,7 @@ ON_SKIN = [
 
 def at_rest(face="amber"):
     model = head_model(face)
-    return FaceGeometry.at_rest(model.vertices, model.normals, len(model.trains))
+    return FaceGeometry.at_rest(model)
 
 
 @pytest.mark.parametrize("face", face_names())
@@ -94,6 +95,41 @@ def test_a_turned_head_moves_no_point_of_its_face():
     assert set(np.flatnonzero(np.abs(shown) > 0.01) + 1) == set(HEAD)
 
 
+def test_the_tongue_is_read_in_the_jaw_s_frame():
+    model, geometry = head_model(), at_rest()
+    meter, points = FapMeter(model), feature_points(model)
+    geometry.tongue[points["6.1"].vertex] += np.array([-0.001, 0.002, 0.003], np.float32)
+    geometry.tongue[points["6.2"].vertex, 1] += 0.001
+    geometry.jaw[:3, 3] = 0.0, -0.02, 0.0
+    shown = meter.measure(geometry)
+    units = meter.units
+    expected = (0.001 / units.MW, 0.002 / units.MNS, 0.003 / units.MW, 0.001 / units.MNS)
+    np.testing.assert_allclose(shown[42:46], expected, rtol=1e-3)
+
+
+def test_a_rolled_tongue_shows_the_angle_of_its_borders():
+    model, geometry = head_model(), at_rest()
+    meter, points = FapMeter(model), feature_points(model)
+    left, right, middle = (points[number] for number in ("6.3", "6.4", "6.2"))
+    half = 0.5 * (left.position[0] - right.position[0])
+    before = 0.5 * (left.position[1] + right.position[1]) - middle.position[1]
+    for side in (left, right):
+        geometry.tongue[side.vertex, 1] += half - before
+    angle = np.arctan2(half, half) - np.arctan2(before, half)
+    assert meter.measure(geometry)[46] == pytest.approx(angle * 1e5, rel=1e-4)
+
+
+def test_pupils_and_eyeballs_show_what_they_do():
+    geometry = at_rest()
+    geometry.pupils[:] = 1.5, 0.5
+    geometry.eye_thrust[:] = 0.001, -0.002
+    meter = FapMeter(head_model())
+    shown = meter.measure(geometry)
+    # a pupil at rest is a third of the iris, which counts 1024
+    np.testing.assert_allclose(shown[28:30], [1024 / 6, -1024 / 6], rtol=1e-5)
+    np.testing.assert_allclose(shown[26:28], np.array([0.001, -0.002]) / meter.units.ES, rtol=1e-5)
+
+
 def test_eyes_that_converge_look_inward():
     shown = FapMeter(head_model()).measure(deformer_of().at(FacePose.of(gaze_vergence=0.1)))
     assert shown[22] == pytest.approx(-1e4, abs=1.0)
@@ -111,7 +147,7 @@ def test_a_mirrored_face_shows_mirrored_faps(face):
         for known in LOW_LEVEL:
             name = known.name.replace("_l_", "_?_").replace("_r_", "_l_").replace("_?_", "_r_")
             name = name.replace("_lip_lm", "_lip_?m").replace("_lip_rm", "_lip_lm").replace("_lip_?m", "_lip_rm")
-            sign = -1 if known.name in ("shift_jaw", "bend_nose", "head_yaw", "head_roll") else 1
+            sign = -1 if known.name in ("shift_jaw", "bend_nose", "shift_tongue_tip", "head_yaw", "head_roll") else 1
             sign = -1 if "yaw" in known.name else sign
             assert other[fap(name).number - 1] == pytest.approx(sign * one[known.number - 1], abs=0.5), known.name
 
@@ -122,7 +158,7 @@ def _mirrored(values):
         known = parameter(_names()[index])
         if known.partner:
             result[parameter(known.partner).index] = value
-        elif known.name in ("gaze_yaw", "head_yaw", "head_roll", "jaw_shift", "mouth_shift", "nose_bend"):
+        elif known.sideways:
             result[index] = -value
     return np.clip(result, LOW, HIGH)
 

@@ -78,7 +78,8 @@ def test_any_linear_features_are_solved_for():
     rest = model.vertices[vertices, axes].astype(np.float64)
     kind = np.full(180, Kind.SKIN, np.int32)
     scale = np.full(180, 1e3)
-    readings = Readings(kind, vertices.astype(np.int32), axes.astype(np.int32), scale, rest, np.zeros((1, 3)))
+    bone, roll = np.zeros((1, 3)), np.zeros(3, np.int32)
+    readings = Readings(kind, vertices.astype(np.int32), axes.astype(np.int32), scale, rest, bone, roll)
     sight = sight_compiled.new_sight(model, Features(readings, draw.normal(size=(80, 180)) / 10))
 
     def look(poses):
