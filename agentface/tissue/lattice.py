@@ -28,6 +28,8 @@ _AREAS = (0.15, 3.0)
 """Of the reference: what a vertex may count for, at least and at most."""
 _AT_A_HOLE = 0.3, 0.7
 """How far muscles may pull on the first two rings of columns round a hole: a thin edge would flap."""
+_HANDED = 1.0
+_INSIDE = 0.3
 _LEAST_VOLUME = 0.25
 """Of area times thickness: a prism that leans more has no volume to keep."""
 
@@ -122,7 +124,7 @@ def build_lattice(model: HeadModel, file: TissueFile | None = None) -> Lattice:
         edges=edges,
         normals=normals,
         free=~(where.fixed | where.absent),
-        pulled=_pulled(where, beside),
+        pulled=_pulled(model, where, beside),
         members=where,
         carried=carried_by(model, edges, where),
         springs=springs,
@@ -189,10 +191,11 @@ def _prisms(
     return Prisms(corners[kept].astype(np.int32)), volumes[kept], np.flatnonzero(due & ~sound).astype(np.int32)
 
 
-def _pulled(where: Members, beside: SparseMatrix) -> Doubles:
+def _pulled(model: HeadModel, where: Members, beside: SparseMatrix) -> Doubles:
     free = ~(where.fixed | where.absent)
     near, next_to_it = (grown(where.absent, beside, rings) for rings in (1, 2))
-    return np.asarray(free * np.where(near, _AT_A_HOLE[0], np.where(next_to_it, _AT_A_HOLE[1], 1.0)))
+    field = free * np.where(near, _AT_A_HOLE[0], np.where(next_to_it, _AT_A_HOLE[1], 1.0))
+    return np.asarray(np.where(where.carried & (model.material[:, 1] < _INSIDE), _HANDED, field))
 
 
 def _tether(model: HeadModel, file: TissueFile, depth: Doubles, area: Doubles, beside: SparseMatrix) -> Doubles:

@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from agentface.conventions import SIDES, Indices
+from agentface.conventions import SIDES, Doubles, Indices
 from agentface.head.model import HeadModel
 from agentface.head.regions import REGIONS, REST
 from agentface.mesh.graph import Mask, adjacency, harmonic_weights, laplacian, rim_of
@@ -89,6 +89,12 @@ class Carried(NamedTuple):
         terms = self.weights[:, None] * moved[self.carriers]
         ends = np.concatenate([np.zeros((1, 3)), np.cumsum(terms, axis=0, dtype=np.float64)])
         moved[self.vertices] = ends[self.first[1:]] - ends[self.first[:-1]]
+
+    def hand_on(self, forces: Doubles) -> None:
+        """Gives what pulls on the carried rows of ``forces (V, 3)`` to those that carry them, in place."""
+        pulled = np.repeat(self.vertices, np.diff(self.first))
+        np.add.at(forces, self.carriers, self.weights[:, None] * forces[pulled])
+        forces[self.vertices] = 0.0
 
 
 def carried_by(model: HeadModel, edges: Indices, where: Members) -> Carried:

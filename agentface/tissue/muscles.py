@@ -1,7 +1,7 @@
 """The 23 muscles as fields of force on the hypodermis (Zhang, Prakash and Sung, section 3.2; the forces are ours).
 
 The paper refers for its three kinds of muscle to a work that prints no formula either. Here a linear muscle pulls
-toward its bone end, within a cone; a sheet along parallel fibres, within a strip; a sphincter toward its centre, on a
+toward its bone end, within a cone, and may thicken; a sheet along parallel fibres, within a strip; a sphincter toward its centre, on a
 ring. Forces are given for 8 mm2 of skin, so that they do not depend on the mesh.
 """
 
@@ -58,21 +58,38 @@ def _force(model: HeadModel, lattice: Lattice, name: str) -> Doubles:
     if not np.abs(field).max() > _LEAST:
         hint = "its zone must reach skin of its regions"
         raise InvalidValueError(Place(TISSUE_FILE, place), "a muscle that pulls on some of the tissue", "none", hint)
-    return row.strength * field
+    return row.strength * field + belly_field(model, lattice, row, side)
+
+
+def belly_field(model: HeadModel, lattice: Lattice, row: MuscleRow, side: str) -> Doubles:
+    """``(V, 3)``: the force with which a muscle that thickens pushes out of the face; 0 for one without a belly."""
+    field = np.zeros_like(lattice.normals)
+    if isinstance(row, LinearRow) and row.belly is not None:
+        unit = 1e3 * model.landmarks.eye_separation
+        away = lattice.rest[HYPODERMIS] - 1e3 * anchor_point(row.belly, side, model.landmarks)
+        near = smoothstep(1.0, 0.0, np.linalg.norm(away, axis=1) / (unit * row.belly.radius))
+        field += (row.belly.strength * near * _reach(model, lattice, row))[:, None] * lattice.normals
+    return field
 
 
 def unit_field(model: HeadModel, lattice: Lattice, row: MuscleRow, side: str) -> Doubles:
-    """``(V, 3)``: the force of a muscle of strength 1 on one side."""
+    """``(V, 3)``: the pull of a muscle of strength 1 on one side."""
     unit = 1e3 * model.landmarks.eye_separation
-    points = lattice.rest[HYPODERMIS]
-    reach = model.borders.reach(row, model.landmarks.eye_separation) * lattice.area * lattice.pulled
+    points, reach = lattice.rest[HYPODERMIS], _reach(model, lattice, row)
     if isinstance(row, SphincterRow):
         centre = 1e3 * anchor_point(row.centre, side, model.landmarks)
-        return reach[:, None] * _sphincter(row, points, centre, unit, lattice.normals)
-    origin, insertion = (1e3 * anchor_point(anchor, side, model.landmarks) for anchor in (row.origin, row.insertion))
-    if isinstance(row, SheetRow):
-        return reach[:, None] * _sheet(row, points, origin, insertion, unit)
-    return reach[:, None] * _linear(row, points, origin, insertion, unit)
+        pull = _sphincter(row, points, centre, unit, lattice.normals)
+    else:
+        ends = (1e3 * anchor_point(anchor, side, model.landmarks) for anchor in (row.origin, row.insertion))
+        pull = (_sheet if isinstance(row, SheetRow) else _linear)(row, points, *ends, unit)
+    field = reach[:, None] * pull
+    lattice.carried.hand_on(field)
+    return field
+
+
+def _reach(model: HeadModel, lattice: Lattice, row: MuscleRow) -> Doubles:
+    """``(V,)``: how far a muscle may move each node at all, as its area of skin and its regions say."""
+    return np.asarray(model.borders.reach(row, model.landmarks.eye_separation) * lattice.area * lattice.pulled)
 
 
 def _linear(row: LinearRow, points: Doubles, origin: Doubles, insertion: Doubles, unit: float) -> Doubles:

@@ -130,7 +130,7 @@ class DynamicsTable(Table):
 class _MuscleRow(Territory):
     """What every muscle has: a territory, a strength, what contracts it, and the action unit that it is fitted to."""
 
-    strength: Annotated[float, Field(gt=0, le=100)]
+    strength: Annotated[float, Field(gt=0, le=1000)]
     moved_by: Annotated[dict[str, Annotated[float, Field(gt=0, le=1)]], Field(min_length=1)]
     action_unit: Annotated[int, Field(ge=1, le=99)]
 
@@ -140,14 +140,25 @@ class _FibreRow(_MuscleRow):
     insertion: Anchor
 
 
+class BellyTable(Anchor):
+    """Where a muscle that shortens thickens, and how hard it lifts the fat over it there, for 8 mm2 of skin."""
+
+    radius: _Length
+    strength: Annotated[float, Field(gt=0, le=20)]
+
+
 class LinearRow(_FibreRow):
-    """Pulls toward its bone end within a cone: from ``fall_near`` on, most at ``fall_start``, to ``fall_finish``."""
+    """Pulls toward its bone end within a cone: from ``fall_near`` on, most at ``fall_start``, to ``fall_finish``.
+
+    With a ``belly`` it pushes out of the face as well, round that.
+    """
 
     kind: Literal["linear"]
     zone_deg: Annotated[float, Field(gt=0, le=90)]
     fall_near: Annotated[float, Field(ge=0, le=5)] = 0.0
     fall_start: _Length
     fall_finish: _Length
+    belly: BellyTable | None = None
 
 
 class SheetRow(_FibreRow):

@@ -20,7 +20,7 @@ from agentface.studies.calibration.tissue_loss import ShapeLoss
 from agentface.tissue.columns import Columns, coloured, pack, unpacked
 from agentface.tissue.lattice import Lattice, build_lattice
 from agentface.tissue.layers import EPIDERMIS, HYPODERMIS
-from agentface.tissue.muscles import unit_field
+from agentface.tissue.muscles import belly_field, unit_field
 from agentface.tissue.newton import factors, solve
 from agentface.tissue.relaxation import gradually, new_loads
 from agentface.tissue.tissue_file import TISSUE_FILE, TISSUE_MUSCLES, UNPAIRED, MuscleRow, TissueFile
@@ -74,11 +74,12 @@ class TissueFitter:
         return unpacked(self._columns, there) - self.lattice.rest
 
     def force(self, name: str, row: MuscleRow) -> Doubles:
-        """``(3, V, 3)``: the force of a muscle, or of a pair."""
-        result = np.zeros((3, self._count, 3))
-        for side in SIDES if name != UNPAIRED else SIDES[:1]:
-            result[HYPODERMIS] += unit_field(self.model, self.lattice, row, side)
-        return row.strength * result
+        """``(3, V, 3)``: the pull of a muscle, or of a pair."""
+        return row.strength * self._of_sides(unit_field, name, row)
+
+    def belly(self, name: str, row: MuscleRow) -> Doubles:
+        """``(3, V, 3)``: what a muscle, or a pair, pushes out of the face."""
+        return self._of_sides(belly_field, name, row)
 
     def fit(self, progress: Progress) -> TissueFile:
         """The file with its muscles fitted one after the other; ``progress`` is told of each.
@@ -92,12 +93,20 @@ class TissueFitter:
                 place = Place(TISSUE_FILE, ("muscles", name, "action_unit"))
                 raise InvalidValueError(place, f"one of {', '.join(map(str, units))}", row.action_unit)
         for name in TISSUE_MUSCLES:
-            others = np.zeros((3, self._count, 3))
+            others = self.belly(name, rows[name])
             for other, part in _TOGETHER.get(name, {}).items():
                 others += part * self.force(other, rows[other])
             rows[name], loss = MuscleFit(self, name, rows[name], units[rows[name].action_unit], others).run()
             progress(f"{name}: {loss:.3f}")
         return self.file.model_copy(update={"muscles": rows})
+
+    def _of_sides(
+        self, field: Callable[[HeadModel, Lattice, MuscleRow, str], Doubles], name: str, row: MuscleRow
+    ) -> Doubles:
+        result = np.zeros((3, self._count, 3))
+        for side in SIDES if name != UNPAIRED else SIDES[:1]:
+            result[HYPODERMIS] += field(self.model, self.lattice, row, side)
+        return result
 
 
 class MuscleFit:
@@ -110,7 +119,7 @@ class MuscleFit:
         name: of the muscle, without side.
         row: where it starts.
         unit: what it is to make.
-        others: ``(3, V, 3)``, the force of what contracts with it.
+        others: ``(3, V, 3)``, the force of what contracts with it, its own belly among it.
     """
 
     def __init__(self, fitter: TissueFitter, name: str, row: MuscleRow, unit: ActionUnit, others: Doubles) -> None:
