@@ -28,8 +28,8 @@ _AREAS = (0.15, 3.0)
 """Of the reference: what a vertex may count for, at least and at most."""
 _AT_A_HOLE = 0.3, 0.7
 """How far muscles may pull on the first two rings of columns round a hole: a thin edge would flap."""
-_HANDED = 1.0
 _INSIDE = 0.3
+"""Of the mouth's inside, from where on a vertex is no skin that a muscle may end in."""
 _LEAST_VOLUME = 0.25
 """Of area times thickness: a prism that leans more has no volume to keep."""
 
@@ -58,7 +58,8 @@ class Lattice:
         triangles, edges: of the skin.
         normals: ``(V, 3)`` of the skin.
         free: ``(V,)`` the columns that move.
-        pulled: ``(V,)`` 0..1, how far muscles may pull on each: less beside what is not in the lattice.
+        pulled: ``(V,)`` 0..1, how far muscles may pull on each: less beside what is not in the lattice; all the way on
+            skin that is carried, which hands it on.
         members: the others.
         carried: the skin that follows them.
         springs: all of them; those between nodes that stay, or that are not in the lattice, are left out.
@@ -195,7 +196,7 @@ def _pulled(model: HeadModel, where: Members, beside: SparseMatrix) -> Doubles:
     free = ~(where.fixed | where.absent)
     near, next_to_it = (grown(where.absent, beside, rings) for rings in (1, 2))
     field = free * np.where(near, _AT_A_HOLE[0], np.where(next_to_it, _AT_A_HOLE[1], 1.0))
-    return np.asarray(np.where(where.carried & (model.material[:, 1] < _INSIDE), _HANDED, field))
+    return np.asarray(np.where(where.carried & (model.material[:, 1] < _INSIDE), 1.0, field))
 
 
 def _tether(model: HeadModel, file: TissueFile, depth: Doubles, area: Doubles, beside: SparseMatrix) -> Doubles:

@@ -93,7 +93,9 @@ class Carried(NamedTuple):
     def hand_on(self, forces: Doubles) -> None:
         """Gives what pulls on the carried rows of ``forces (V, 3)`` to those that carry them, in place."""
         pulled = np.repeat(self.vertices, np.diff(self.first))
-        np.add.at(forces, self.carriers, self.weights[:, None] * forces[pulled])
+        for axis in range(3):
+            handed = self.weights * forces[pulled, axis]
+            forces[:, axis] += np.bincount(self.carriers, handed, len(forces))
         forces[self.vertices] = 0.0
 
 

@@ -30,7 +30,7 @@ _HOME = 0.05
 """The pull to the anatomist's values."""
 _ROUNDS = (30, 15, 15)
 """Steps of each search; between two of them the background is made anew."""
-_LOG_STRENGTH = -5.0, 4.6
+_LOG_STRENGTH = -5.0, 6.5
 _STEP = 2e-3
 """Of a knob's range: for the change of a muscle's forces with it."""
 _DIGITS = 4
@@ -39,8 +39,8 @@ _TOGETHER = {"levator_alaeque_nasi": {"corrugator": 0.5}}
 _PARTS = {
     "levator_alaeque_nasi": 1.15,
     "levator_labii": 1.15,
-    "zygomaticus_major": 1.15,
-    "depressor_anguli": 1.17,
+    "zygomaticus_major": 1.3,
+    "depressor_anguli": 1.05,
     "risorius": 1.05,
     "mentalis": 1.3,
     "orbicularis_oculi": 0.9,

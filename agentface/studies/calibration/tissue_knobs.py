@@ -12,7 +12,7 @@ from agentface.tissue.tissue_file import LinearRow, MuscleRow, SheetRow, Sphinct
 
 _BONE_END, _SKIN_END = 0.40, 0.25
 """How far the two ends may go from where the row has them, in eye separations."""
-_APART = 0.3
+_APART = 0.5
 """The least between ``fall_near``, ``fall_start`` and ``fall_finish``, in eye separations."""
 EXACT = 12
 """Digits that change nothing."""

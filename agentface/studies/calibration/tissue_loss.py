@@ -10,7 +10,7 @@ from agentface.tissue.layers import EPIDERMIS
 
 _DIRECTION = 0.8
 _OUTSIDE = 1.0
-_STRETCH = 0.8
+_STRETCH = 1.2
 _PEAK = 4.0
 """How much more the largest displacements count: they are what a stranger sees."""
 _PART_OF_PEAK = 0.25
