@@ -37,10 +37,10 @@ _DIGITS = 4
 _TOGETHER = {"levator_alaeque_nasi": {"corrugator": 0.5}}
 """What else contracts in the action unit that a muscle is fitted to."""
 _PARTS = {
-    "levator_alaeque_nasi": 1.15,
-    "levator_labii": 1.15,
+    "levator_alaeque_nasi": 1.3,
+    "levator_labii": 1.3,
     "zygomaticus_major": 1.3,
-    "depressor_anguli": 1.05,
+    "depressor_anguli": 1.1,
     "risorius": 1.05,
     "mentalis": 1.3,
     "orbicularis_oculi": 0.9,
