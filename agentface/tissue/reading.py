@@ -102,7 +102,7 @@ def _check_muscles(document: Document, muscles: dict[str, Any]) -> None:
 
 def _check_row(document: Document, where: _Where, row: dict[str, Any]) -> None:
     _check_names(document, (*where, "moved_by"), row.get("moved_by"), "a muscle without side, or jaw_open", MUSCLES)
-    for key in ("origin", "insertion", "centre"):
+    for key in ("origin", "insertion", "centre", "belly"):
         at = _table(row.get(key)).get("at")
         if isinstance(at, str) and at not in _ANYWHERE:
             document.fault((*where, key, "at"), _LANDMARK, at, did_you_mean(at, _ANYWHERE))

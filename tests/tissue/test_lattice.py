@@ -70,6 +70,17 @@ def test_lids_and_the_inside_of_the_mouth_are_carried(any_lattice: Lattice) -> N
     assert np.allclose(moved[vertices, 1], 2.0 * share, atol=1e-5)
 
 
+def test_what_is_handed_on_does_the_same_work(any_lattice: Lattice) -> None:
+    rng = np.random.default_rng(0)
+    forces, moved = rng.standard_normal((2, *any_lattice.rest[0].shape))
+    moved[any_lattice.members.fixed | any_lattice.members.still] = 0.0
+    any_lattice.carried.apply(moved)
+    work = (forces * moved).sum()
+    any_lattice.carried.hand_on(forces)
+    assert (forces * moved).sum() == pytest.approx(work, rel=1e-5)
+    assert not forces[any_lattice.members.carried].any()
+
+
 def test_a_prism_of_right_angles_has_base_times_height() -> None:
     top = np.array([[0.0, 0.0, 0.0], [2.0, 0.0, 0.0], [0.0, 3.0, 0.0]])
     points = np.concatenate([top, top - [0.0, 0.0, 4.0]])

@@ -8,16 +8,30 @@ import numpy as np
 import pytest
 
 from agentface.errors import InvalidValueError, Place
-from agentface.head.muscles import Anchor
+from agentface.head.muscles import Anchor, anchor_point
 from agentface.tissue import soundness
 from agentface.tissue.lattice import build_lattice
-from agentface.tissue.muscles import nodal_forces
+from agentface.tissue.layers import HYPODERMIS
+from agentface.tissue.muscles import belly_field, nodal_forces
 
 
 def with_row(lattice, name, **changes):
     file = lattice.file
     rows = file.muscles | {name: file.muscles[name].model_copy(update=changes)}
     return dataclasses.replace(lattice, file=file.model_copy(update={"muscles": rows}))
+
+
+def test_a_belly_pushes_out_of_the_face_and_nowhere_else(model, lattice):
+    row = lattice.file.muscles["zygomaticus_major"]
+    left, right = (belly_field(model, lattice, row, side) for side in "lr")
+    assert np.abs(left[model.mirror] * [-1.0, 1.0, 1.0] - right).max() < 1e-6
+    away = np.linalg.norm(lattice.rest[HYPODERMIS] * 1e-3 - anchor_point(row.belly, "l", model.landmarks), axis=1)
+    size = (left * lattice.normals).sum(axis=1)
+    assert (size >= 0.0).all()
+    assert np.allclose(size, np.linalg.norm(left, axis=1))
+    assert not size[away > row.belly.radius * model.landmarks.eye_separation].any()
+    assert size.max() > 0.5 * row.belly.strength
+    assert not belly_field(model, lattice, row.model_copy(update={"belly": None}), "l").any()
 
 
 def test_a_muscle_of_no_length_is_told(model, lattice):

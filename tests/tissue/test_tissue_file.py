@@ -117,6 +117,13 @@ FAULTS = [
         "cheekbones",
     ),
     (
+        [(r"belly: \{at: cheekbone,", "belly: {at: cheekbones,")],
+        "belly: {at: cheekbones,",
+        "muscles.zygomaticus_major.belly.at",
+        "a landmark",
+        "cheekbones",
+    ),
+    (
         [(ROW, r"\g<0>"), (r"regions: \[lower_face,", "regions: [jaw,")],
         "regions: [jaw,",
         "muscles.risorius.regions.0",
