@@ -12,7 +12,7 @@ from agentface.tissue.columns import new_forces
 from agentface.tissue.solvers.equilibrium import equilibrium
 from agentface.tissue.tables import TissueTables
 
-STABLE = 0.12
+STABLE = 0.1
 """The longest time step that no lattice tried has diverged with, in units of the root of mass over a stiffness of 1."""
 
 
