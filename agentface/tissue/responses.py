@@ -26,6 +26,12 @@ class Responses(NamedTuple):
         """``(46,)``: what each column counts for."""
         return (contractions[:, None] ** _POWERS).ravel().astype(np.float32)
 
+    @property
+    def largest(self) -> Doubles:
+        """``(23,)`` mm: how far each muscle, fully contracted, moves a coordinate at most."""
+        whole = self.columns.reshape(-1, len(LEVELS), self.columns.shape[1]).sum(axis=1)
+        return np.abs(whole).max(axis=1).astype(np.float64)
+
 
 def linear(lattice: Lattice, columns: Columns, forces: Doubles) -> Responses:
     """The responses to ``forces (23, V, 3)`` as far as the tissue at rest is linear, in numpy."""

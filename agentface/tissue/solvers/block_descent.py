@@ -2,7 +2,7 @@
 
 A frame begins where the stored responses of the muscles lead from the last one; then block descent corrects what the
 responses do not know, how muscles add up, and only where that is: a batch of columns that did not move in its last turn
-waits for its next one in three frames.
+waits for its next one in four frames.
 """
 
 from __future__ import annotations
@@ -10,14 +10,17 @@ from __future__ import annotations
 import numpy as np
 
 from agentface.conventions import Doubles, Floats
-from agentface.tissue.relaxation import LONGER
 from agentface.tissue.solvers.equilibrium import equilibrium
 from agentface.tissue.tables import TissueTables
 
-_TURNS = 3
+_TURNS = 4
 """Frames in which every batch has a turn."""
-_RESTLESS_MM, _FAR_MM, _MORE = 0.0015, 0.005, 2
+_RESTLESS_MM, _FAR_MM, _MORE = 0.0015, 0.007, 2
 """A batch whose last turn moved a node farther has one in every frame; beyond the second, up to so many more."""
+_OF_LARGEST = 0.0012
+"""The same as a part of how far the muscles move the tissue, where that is more."""
+_LONGER = 1.8
+"""Of Newton's step a column: frames that lie near to each other bear longer steps than a search from afar."""
 _EVERY = 1.0
 """mm2: marks a batch that must have a turn."""
 _STILL, _STILL_SPEED = 1e-3, 0.02
@@ -37,6 +40,7 @@ class BlockDescent:
         self._powers: Floats = tables.responses.powers(self._place)
         self._batches = np.arange(self._moving, dtype=np.int32)
         self._moved: Floats = np.full(self._moving, _EVERY, np.float32)
+        self._largest = tables.responses.largest
         self._frame = 0
         self._settled = True
 
@@ -83,10 +87,11 @@ class BlockDescent:
         self._frame = (self._frame + 1) % _TURNS
         turn = self._batches % _TURNS == self._frame
         chosen = self._batches[turn | (self._moved > _RESTLESS_MM**2)]
-        sweep(tables.columns, self.positions, loads, chosen, len(chosen), LONGER, self._moved)
+        sweep(tables.columns, self.positions, loads, chosen, len(chosen), _LONGER, self._moved)
+        far = max(_FAR_MM, _OF_LARGEST * float((contractions * self._largest).max()))
         for _ in range(_MORE):
-            chosen = chosen[self._moved[chosen] > _FAR_MM**2]
-            sweep(tables.columns, self.positions, loads, chosen, len(chosen), LONGER, self._moved)
+            chosen = chosen[self._moved[chosen] > far**2]
+            sweep(tables.columns, self.positions, loads, chosen, len(chosen), _LONGER, self._moved)
         self._settled = False
 
     def _settle(self) -> None:
@@ -95,6 +100,6 @@ class BlockDescent:
 
         tables = self._tables
         loads = np.tensordot(self._place.astype(np.float32), tables.loads, 1)
-        sweep(tables.columns, self.positions, loads, self._batches, self._moving, LONGER, self._moved)
+        sweep(tables.columns, self.positions, loads, self._batches, self._moving, _LONGER, self._moved)
         sweep(tables.columns, self.positions, loads, self._batches, self._moving, 1.0, self._moved)
         self._settled = float(self._moved.max()) < _SETTLED_MM**2
