@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -12,15 +10,12 @@ import numpy.typing as npt
 from agentface.conventions import Doubles, Floats
 from agentface.errors import InvalidValueError
 from agentface.head.model import HeadModel
-from agentface.kernel import can_compile
 from agentface.mesh.smoothstep import smoothstep
-from agentface.mpeg4 import sight, solver
 from agentface.mpeg4.fap_fit import CLOSED, LIDS, fap_fit, features_of
 from agentface.mpeg4.faps import FAP_COUNT, fap
 from agentface.mpeg4.gaze import GivenAngles
-from agentface.mpeg4.jacobian import Looks
+from agentface.mpeg4.looking import Looking
 from agentface.mpeg4.meter import FapMeter
-from agentface.mpeg4.sight import Features
 from agentface.mpeg4.solver import Wish
 from agentface.parameters import COUNT, FacePose
 
@@ -79,29 +74,11 @@ class FapSolver:
             raise InvalidValueError("steps", "a number from 1 on", steps)
         self.model, self.steps = model, steps
         self.meter = FapMeter(model, compiled=compiled)
-        self._solve: Callable[..., int] = solver.solve
-        self._look: Callable[..., None] = sight.look
-        new_sight: Callable[[HeadModel, Features], Any] = sight.PlainSight
-        if compiled and can_compile():
-            from agentface.mpeg4 import sight_compiled, solver_compiled
-
-            self._solve, self._look = solver_compiled.solve, sight_compiled.look
-            new_sight = sight_compiled.new_sight
-
-        def looks(features: Features) -> Looks:
-            eye = new_sight(model, features)
-
-            def look(poses: Floats) -> Doubles:
-                out = np.empty((len(poses), len(features.matrix)))
-                for values, row in zip(np.ascontiguousarray(poses, np.float32), out, strict=True):
-                    self._look(eye, values, row)
-                return out
-
-            return look
-
-        self.fit = fap_fit(self.meter, looks)
+        looking = Looking(compiled=compiled)
+        self._solve, self._look = looking.solve, looking.look
+        self.fit = fap_fit(self.meter, lambda features: looking.looks(model, features))
         self._features = features_of(self.meter, self.fit.ranges)
-        self._sight = new_sight(model, self._features)
+        self._sight = looking.new_sight(model, self._features)
         self._given = GivenAngles(model)
         count, free = len(self.meter.faps), len(self.fit.problem.free)
         self._usable = np.append(self.fit.usable, [True] * len(LIDS))

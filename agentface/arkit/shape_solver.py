@@ -1,0 +1,258 @@
+"""ARKit's weights to the pose that shows them, and poses back to weights."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from agentface.arkit.eye_looks import EyeLooks, Flags
+from agentface.arkit.sampled_shapes import SKIN_PLACES, SKIN_SHAPES
+from agentface.arkit.shape_fit import ShapeFit, shape_fit
+from agentface.arkit.stream import ArkitStream
+from agentface.arkit.turns import HEAD, HEAD_ANGLES, angles_of, head_of
+from agentface.conventions import Doubles, Floats, check_fraction
+from agentface.errors import InvalidValueError, UnknownNameError
+from agentface.head.arkit import ARKIT_SHAPES
+from agentface.head.model import HeadModel
+from agentface.mesh.smoothstep import smoothstep
+from agentface.motion.gaps import bridged
+from agentface.motion.performance import Performance
+from agentface.mpeg4.looking import Looking
+from agentface.mpeg4.solver import ROUNDS, Problem, Wish
+from agentface.parameters import COUNT, HIGH, LOW, NAMES, NEUTRAL, PARAMETERS, FacePose, indices_of
+
+_COUNT = len(ARKIT_SHAPES)
+_RIDGE, _BACK = 30.0, 3.0
+"""mm^2: how strongly rest holds a parameter, and the frame before."""
+_STIFF, _CALLED = 1e4, 0.05
+"""mm^2: how strongly rest holds a parameter that serves no shape asked for; the weight of a shape that frees it."""
+_FIRST = 8
+"""Steps for what is made once: the face's own answers to single weights."""
+_OWN_RIDGE = 1e-3
+"""Of the mean square of an answer, how strongly weights of 0 hold when they are sought."""
+_OPEN, _CLOSE, _TONGUE = (ARKIT_SHAPES.index(name) for name in ("jawOpen", "mouthClose", "tongueOut"))
+_SKIN_OPEN, _SKIN_CLOSE = (SKIN_SHAPES.index(name) for name in ("jawOpen", "mouthClose"))
+_TONGUES = list(indices_of("tongue_out")) if "tongue_out" in NAMES else []
+_GAZE = [known.index for known in PARAMETERS if known.kind == "gaze"]
+_REFINED = 1
+"""How often weights are sought again by what the face shows of those found."""
+_TRIES = 10
+"""Calls of the minimum in a box at most."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class ArkitSolution:
+    """The pose found for a frame of weights.
+
+    Attributes:
+        pose: what shows them.
+        moves: ``(COUNT,)`` bool, the parameters that the weights given move; the others are as they were before.
+        looks: how many poses were tried.
+        features: what the solver knows of the pose, for the next frame.
+    """
+
+    pose: FacePose
+    moves: Flags
+    looks: int
+    features: Doubles
+
+
+class ShapeSolver:
+    """Finds poses of one face that show ARKit's weights: the skin goes where the artists' shapes go.
+
+    The target is the sum of the shapes, each times its weight; mouthClose, which closes the lips of an opened jaw,
+    counts no more than jawOpen. Eyes and tongue are given by their weights. Backwards, weights are sought by least
+    squares in 0..1 on the face's own answers to single weights: on the artists' shapes, what muscles cannot make of one
+    shape would be taken for others.
+
+    Args:
+        model: the face; what is found is exact for its geometric deformer.
+        steps: Gauss-Newton steps a frame at most.
+        compiled: False for the numpy form.
+
+    Raises InvalidValueError for ``steps`` that is no number from 1 on.
+    """
+
+    def __init__(self, model: HeadModel, *, steps: int = 3, compiled: bool = True) -> None:
+        if isinstance(steps, bool) or not isinstance(steps, int) or steps < 1:
+            raise InvalidValueError("steps", "a number from 1 on", steps)
+        self.model, self.steps = model, steps
+        self._looking = Looking(compiled=compiled)
+        self.fit: ShapeFit = shape_fit(model, lambda features: self._looking.looks(model, features))
+        self._sight = self._looking.new_sight(model, self.fit.features)
+        self._eyes = EyeLooks(model)
+        free = self.fit.free
+        self._low, self._high = LOW[free].astype(np.float64), HIGH[free].astype(np.float64)
+        self._pattern = np.ones_like(self.fit.up)
+        self._unit = np.ones(len(self.fit.features.matrix))
+        self._norms = [np.maximum(np.linalg.norm(way, axis=0), 1.0) for way in (self.fit.up, self.fit.down)]
+        self.answers: Doubles = model.derived("arkit.answers", lambda _: self._answers())
+        """``(S, K)``: what the face shows for each of the skin's shapes alone; mouthClose less jawOpen."""
+        square = self.answers @ self.answers.T
+        self._square = square + _OWN_RIDGE * np.trace(square) / len(square) * np.eye(len(square))
+
+    def solve(
+        self,
+        weights: npt.ArrayLike,
+        named: npt.ArrayLike | None = None,
+        previous: ArkitSolution | FacePose | None = None,
+    ) -> ArkitSolution:
+        """The pose that shows ``weights (52,)``, of those that ``named (52,)`` says are given; all without it.
+
+        ``previous`` is the frame before, from which the search begins and which the pose stays near; what the weights
+        given do not move stays as it is there.
+
+        Raises InvalidValueError for another shape and for what is not in 0..1.
+        """
+        asked, given = _checked(weights, named)
+        asked[_CLOSE] = min(asked[_CLOSE], asked[_OPEN])
+        before = previous.pose if isinstance(previous, ArkitSolution) else previous
+        values = NEUTRAL.copy() if before is None else before.array.copy()
+        features = previous.features.copy() if isinstance(previous, ArkitSolution) else self._seen(values)
+        skin, ahead = asked[SKIN_PLACES], _ahead(values)
+        held: Flags = np.logical_not(self.fit.serves[given[SKIN_PLACES]].any(axis=0))
+        looks = 0
+        if not held.all():
+            prior = self._prior(skin @ self.fit.serves)
+            pull = 0.0 if previous is None else _BACK
+            wish = Wish(skin @ self.fit.shapes, self._unit, held, prior, pull, self.steps)
+            looks = int(self._looking.solve(self._sight, self._problem(wish.goal), wish, ahead, features))
+        values[self.fit.free] = ahead[self.fit.free]
+        self._eyes.apply(asked, given, values)
+        moves = self._eyes.moved(given)
+        moves[self.fit.free] = ~held
+        if given[_TONGUE]:
+            values[_TONGUES], moves[_TONGUES] = asked[_TONGUE], True
+        return ArkitSolution(FacePose(values), moves, looks, features)
+
+    def solve_named(
+        self, weights: Mapping[str, float], previous: ArkitSolution | FacePose | None = None
+    ) -> ArkitSolution:
+        """The pose that shows some weights, by their names; nothing else moves (:meth:`solve`).
+
+        Raises UnknownNameError for what is no shape's name and InvalidValueError for a weight that is not in 0..1.
+        """
+        values, named = np.zeros(_COUNT), np.zeros(_COUNT, np.bool_)
+        for name, weight in weights.items():
+            place = arkit_place(name)
+            values[place], named[place] = check_fraction(name, weight), True
+        return self.solve(values, named, previous)
+
+    def weights(self, values: npt.ArrayLike) -> Floats:
+        """``(52,)`` float32, 0..1: the weights of the face that a pose, ``values (COUNT,)``, shows.
+
+        Raises InvalidValueError for another shape.
+        """
+        pose = np.ascontiguousarray(values, np.float32)
+        if pose.shape != (COUNT,):
+            raise InvalidValueError("values", f"{COUNT} values", pose.shape)
+        seen, found = self._seen(pose), np.zeros(_COUNT)
+        near = self._nearest(seen)
+        for _ in range(_REFINED):  # answers to many weights are not quite the sum of those to single ones
+            found[SKIN_PLACES] = near
+            near = self._nearest(seen + near @ self.answers - self.solve(found).features)
+        found[SKIN_PLACES] = near
+        self._eyes.show(pose, found)
+        if _TONGUES:
+            found[_TONGUE] = max(0.0, float(pose[_TONGUES[0]]))
+        return found.astype(np.float32)
+
+    def performance(self, stream: ArkitStream) -> Performance:
+        """The poses that show a stream, each sought from the frame before.
+
+        Head and eyes: the head turns by the angles where there are any, the eyes by their weights.
+        Where it has no frames for long, it lets go (:func:`bridged`).
+        """
+        poses, moves = np.tile(NEUTRAL, (len(stream), 1)), np.zeros(COUNT, np.bool_)
+        found: ArkitSolution | None = None
+        for frame, weights in zip(poses, stream.weights, strict=True):
+            found = self.solve(weights, previous=found)
+            frame[:], moves = found.pose.array, found.moves
+        if stream.angles[:, HEAD_ANGLES].any():
+            poses[:, HEAD], moves[HEAD] = head_of(stream.angles), True
+        times, poses, moved = bridged(stream.times_s, poses, np.asarray(moves[None], np.float32))
+        rate = stream.rate_hz if len(times) == len(stream) else None
+        return Performance(times, poses, moved, rate, name=stream.name, notes=stream.notes)
+
+    def stream(self, performance: Performance) -> ArkitStream:
+        """The weights that a performance shows, at its own times, and the angles of head and eyes."""
+        poses = performance.poses
+        weights = np.stack([self.weights(pose) for pose in poses])
+        eyes = np.array([self._eyes.angles(pose) for pose in poses])
+        angles = angles_of(poses, eyes)
+        return ArkitStream(performance.times_s, weights, angles, performance.rate_hz, performance.name)
+
+    def _seen(self, values: Floats) -> Doubles:
+        """The features of a pose that looks straight ahead: lids follow the eyes, and weights know that."""
+        features = np.empty(len(self._unit))
+        self._looking.look(self._sight, _ahead(values), features)
+        return features
+
+    def _prior(self, called: Doubles) -> Doubles:
+        """What holds each parameter at rest, more firmly where no shape that is asked for is served by it."""
+        idle = 1.0 - np.asarray(smoothstep(0.0, _CALLED, called))
+        return np.diag(_RIDGE + _STIFF * idle * idle)
+
+    def _problem(self, goal: Doubles) -> Problem:
+        """The frame's problem: a signed parameter goes the way on which it serves the goal."""
+        fit = self.fit
+        rising, falling = goal @ fit.up / self._norms[0], -goal @ fit.down / self._norms[1]
+        jacobian = np.where(rising >= falling, fit.up, fit.down)
+        return Problem(fit.free, self._low, self._high, jacobian, self._pattern)
+
+    def _nearest(self, features: Doubles) -> Doubles:
+        """``(S,)``: the weights of ``SKIN_SHAPES`` the sum of whose answers is nearest to ``features (K,)``."""
+        low, high, found = np.zeros(len(self._square)), np.ones(len(self._square)), np.zeros(len(self._square))
+        right = self.answers @ features
+        for closed in (1.0, None):  # mouthClose is of an opened jaw
+            high[_SKIN_CLOSE] = found[_SKIN_OPEN] if closed is None else closed
+            found = np.minimum(found, high)
+            for _ in range(_TRIES):
+                if self._looking.box_minimum(self._square, right, low, high, found) < ROUNDS:
+                    break
+        return found
+
+    def _answers(self) -> Doubles:
+        shown = np.zeros_like(self.fit.shapes)
+        steps, self.steps = self.steps, _FIRST
+        for row, place in zip(shown, SKIN_PLACES.tolist(), strict=True):
+            weights = np.zeros(_COUNT)
+            weights[[place, _OPEN] if place == _CLOSE else place] = 1.0
+            row[:] = self.solve(weights).features
+        self.steps = steps
+        shown[_SKIN_CLOSE] -= shown[_SKIN_OPEN]
+        return shown
+
+
+def arkit_place(name: str) -> int:
+    """Where a weight stands among the 52, by ARKit's name or Live Link Face's, in which the first letter is large.
+
+    Raises UnknownNameError.
+    """
+    known = f"{name[:1].lower()}{name[1:]}"
+    if known not in ARKIT_SHAPES:
+        raise UnknownNameError("ARKit weight", name, ARKIT_SHAPES)
+    return ARKIT_SHAPES.index(known)
+
+
+def _ahead(values: Floats) -> Floats:
+    """A copy of a pose that looks straight ahead."""
+    copy = np.ascontiguousarray(values, np.float32).copy()
+    copy[_GAZE] = 0.0
+    return copy
+
+
+def _checked(weights: npt.ArrayLike, named: npt.ArrayLike | None) -> tuple[Doubles, Flags]:
+    asked = np.array(weights, np.float64)
+    given = np.ones(_COUNT, np.bool_) if named is None else np.array(named, np.bool_)
+    for what, array in (("weights", asked), ("named", given)):
+        if array.shape != (_COUNT,):
+            raise InvalidValueError(what, f"{_COUNT} values", array.shape)
+    asked = np.where(given, asked, 0.0)
+    wrong = np.flatnonzero(~((asked >= 0.0) & (asked <= 1.0)))
+    if len(wrong):
+        raise InvalidValueError(ARKIT_SHAPES[wrong[0]], "a number in 0..1", float(asked[wrong[0]]))
+    return asked, given
