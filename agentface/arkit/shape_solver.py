@@ -31,7 +31,7 @@ _STIFF, _CALLED = 1e4, 0.05
 """mm^2: how strongly rest holds a parameter that serves no shape asked for; the weight of a shape that frees it."""
 _FIRST = 8
 """Steps for what is made once: the face's own answers to single weights."""
-_OWN_RIDGE = 1e-3
+_OWN_RIDGE = 1e-4
 """Of the mean square of an answer, how strongly weights of 0 hold when they are sought."""
 _OPEN, _CLOSE, _TONGUE = (ARKIT_SHAPES.index(name) for name in ("jawOpen", "mouthClose", "tongueOut"))
 _SKIN_OPEN, _SKIN_CLOSE = (SKIN_SHAPES.index(name) for name in ("jawOpen", "mouthClose"))
