@@ -57,9 +57,13 @@ class ShapeFit(NamedTuple):
 
 def shape_fit(model: HeadModel, looks: Callable[[Features], Looks]) -> ShapeFit:
     """The fit of a face, kept with its model; ``looks`` makes what looks at poses for some features."""
-    rules = (rules_file(name) for name in ("emotions.yaml", "blends.yaml", "visemes.yaml"))
-    fit: ShapeFit = model.derived(f"arkit.shape_fit.{stamp_of(rules)}", lambda _: _fit(model, looks))
+    fit: ShapeFit = model.derived(f"arkit.shape_fit.{rules_stamp()}", lambda _: _fit(model, looks))
     return fit
+
+
+def rules_stamp() -> str:
+    """A name that changes with the rules that natural poses are made by."""
+    return stamp_of(rules_file(name) for name in ("emotions.yaml", "blends.yaml", "visemes.yaml"))
 
 
 def _fit(model: HeadModel, looks: Callable[[Features], Looks]) -> ShapeFit:

@@ -10,19 +10,15 @@ import numpy.typing as npt
 
 from agentface.arkit.eye_looks import EyeLooks, Flags
 from agentface.arkit.sampled_shapes import SKIN_PLACES, SKIN_SHAPES
-from agentface.arkit.shape_fit import ShapeFit, shape_fit
-from agentface.arkit.stream import ArkitStream
-from agentface.arkit.turns import HEAD, HEAD_ANGLES, angles_of, head_of
+from agentface.arkit.shape_fit import ShapeFit, rules_stamp, shape_fit
 from agentface.conventions import Doubles, Floats, check_fraction
 from agentface.errors import InvalidValueError, UnknownNameError
 from agentface.head.arkit import ARKIT_SHAPES
 from agentface.head.model import HeadModel
 from agentface.mesh.smoothstep import smoothstep
-from agentface.motion.gaps import bridged
-from agentface.motion.performance import Performance
 from agentface.mpeg4.looking import Looking
 from agentface.mpeg4.solver import ROUNDS, Problem, Wish
-from agentface.parameters import COUNT, HIGH, LOW, NAMES, NEUTRAL, PARAMETERS, FacePose, indices_of
+from agentface.parameters import COUNT, HIGH, LOW, NEUTRAL, PARAMETERS, FacePose, indices_of
 
 _COUNT = len(ARKIT_SHAPES)
 _RIDGE, _BACK = 30.0, 3.0
@@ -35,7 +31,7 @@ _OWN_RIDGE = 1e-4
 """Of the mean square of an answer, how strongly weights of 0 hold when they are sought."""
 _OPEN, _CLOSE, _TONGUE = (ARKIT_SHAPES.index(name) for name in ("jawOpen", "mouthClose", "tongueOut"))
 _SKIN_OPEN, _SKIN_CLOSE = (SKIN_SHAPES.index(name) for name in ("jawOpen", "mouthClose"))
-_TONGUES = list(indices_of("tongue_out")) if "tongue_out" in NAMES else []
+_TONGUE_OUT = indices_of("tongue_out")[0]
 _GAZE = [known.index for known in PARAMETERS if known.kind == "gaze"]
 _REFINED = 1
 """How often weights are sought again by what the face shows of those found."""
@@ -83,13 +79,13 @@ class ShapeSolver:
         self._looking = Looking(compiled=compiled)
         self.fit: ShapeFit = shape_fit(model, lambda features: self._looking.looks(model, features))
         self._sight = self._looking.new_sight(model, self.fit.features)
-        self._eyes = EyeLooks(model)
+        self.eyes = EyeLooks(model)
         free = self.fit.free
         self._low, self._high = LOW[free].astype(np.float64), HIGH[free].astype(np.float64)
         self._pattern = np.ones_like(self.fit.up)
         self._unit = np.ones(len(self.fit.features.matrix))
         self._norms = [np.maximum(np.linalg.norm(way, axis=0), 1.0) for way in (self.fit.up, self.fit.down)]
-        self.answers: Doubles = model.derived("arkit.answers", lambda _: self._answers())
+        self.answers: Doubles = model.derived(f"arkit.answers.{rules_stamp()}", lambda _: self._answers())
         """``(S, K)``: what the face shows for each of the skin's shapes alone; mouthClose less jawOpen."""
         square = self.answers @ self.answers.T
         self._square = square + _OWN_RIDGE * np.trace(square) / len(square) * np.eye(len(square))
@@ -107,26 +103,7 @@ class ShapeSolver:
 
         Raises InvalidValueError for another shape and for what is not in 0..1.
         """
-        asked, given = _checked(weights, named)
-        asked[_CLOSE] = min(asked[_CLOSE], asked[_OPEN])
-        before = previous.pose if isinstance(previous, ArkitSolution) else previous
-        values = NEUTRAL.copy() if before is None else before.array.copy()
-        features = previous.features.copy() if isinstance(previous, ArkitSolution) else self._seen(values)
-        skin, ahead = asked[SKIN_PLACES], _ahead(values)
-        held: Flags = np.logical_not(self.fit.serves[given[SKIN_PLACES]].any(axis=0))
-        looks = 0
-        if not held.all():
-            prior = self._prior(skin @ self.fit.serves)
-            pull = 0.0 if previous is None else _BACK
-            wish = Wish(skin @ self.fit.shapes, self._unit, held, prior, pull, self.steps)
-            looks = int(self._looking.solve(self._sight, self._problem(wish.goal), wish, ahead, features))
-        values[self.fit.free] = ahead[self.fit.free]
-        self._eyes.apply(asked, given, values)
-        moves = self._eyes.moved(given)
-        moves[self.fit.free] = ~held
-        if given[_TONGUE]:
-            values[_TONGUES], moves[_TONGUES] = asked[_TONGUE], True
-        return ArkitSolution(FacePose(values), moves, looks, features)
+        return self._solved(*_checked(weights, named), previous, self.steps)
 
     def solve_named(
         self, weights: Mapping[str, float], previous: ArkitSolution | FacePose | None = None
@@ -155,35 +132,32 @@ class ShapeSolver:
             found[SKIN_PLACES] = near
             near = self._nearest(seen + near @ self.answers - self.solve(found).features)
         found[SKIN_PLACES] = near
-        self._eyes.show(pose, found)
-        if _TONGUES:
-            found[_TONGUE] = max(0.0, float(pose[_TONGUES[0]]))
+        self.eyes.show(pose, found)
+        found[_TONGUE] = pose[_TONGUE_OUT]
         return found.astype(np.float32)
 
-    def performance(self, stream: ArkitStream) -> Performance:
-        """The poses that show a stream, each sought from the frame before.
-
-        Head and eyes: the head turns by the angles where there are any, the eyes by their weights.
-        Where it has no frames for long, it lets go (:func:`bridged`).
-        """
-        poses, moves = np.tile(NEUTRAL, (len(stream), 1)), np.zeros(COUNT, np.bool_)
-        found: ArkitSolution | None = None
-        for frame, weights in zip(poses, stream.weights, strict=True):
-            found = self.solve(weights, previous=found)
-            frame[:], moves = found.pose.array, found.moves
-        if stream.angles[:, HEAD_ANGLES].any():
-            poses[:, HEAD], moves[HEAD] = head_of(stream.angles), True
-        times, poses, moved = bridged(stream.times_s, poses, np.asarray(moves[None], np.float32))
-        rate = stream.rate_hz if len(times) == len(stream) else None
-        return Performance(times, poses, moved, rate, name=stream.name, notes=stream.notes)
-
-    def stream(self, performance: Performance) -> ArkitStream:
-        """The weights that a performance shows, at its own times, and the angles of head and eyes."""
-        poses = performance.poses
-        weights = np.stack([self.weights(pose) for pose in poses])
-        eyes = np.array([self._eyes.angles(pose) for pose in poses])
-        angles = angles_of(poses, eyes)
-        return ArkitStream(performance.times_s, weights, angles, performance.rate_hz, performance.name)
+    def _solved(
+        self, asked: Doubles, given: Flags, previous: ArkitSolution | FacePose | None, steps: int
+    ) -> ArkitSolution:
+        asked[_CLOSE] = min(asked[_CLOSE], asked[_OPEN])
+        before = previous.pose if isinstance(previous, ArkitSolution) else previous
+        values = NEUTRAL.copy() if before is None else before.array.copy()
+        features = previous.features.copy() if isinstance(previous, ArkitSolution) else self._seen(values)
+        skin, ahead = asked[SKIN_PLACES], _ahead(values)
+        held: Flags = np.logical_not(self.fit.serves[given[SKIN_PLACES]].any(axis=0))
+        looks = 0
+        if not held.all():
+            prior = self._prior(skin @ self.fit.serves)
+            pull = 0.0 if previous is None else _BACK
+            wish = Wish(skin @ self.fit.shapes, self._unit, held, prior, pull, steps)
+            looks = int(self._looking.solve(self._sight, self._problem(wish.goal), wish, ahead, features))
+        values[self.fit.free] = ahead[self.fit.free]
+        self.eyes.apply(asked, given, values)
+        moves = self.eyes.moved(given)
+        moves[self.fit.free] = ~held
+        if given[_TONGUE]:
+            values[_TONGUE_OUT], moves[_TONGUE_OUT] = asked[_TONGUE], True
+        return ArkitSolution(FacePose(values), moves, looks, features)
 
     def _seen(self, values: Floats) -> Doubles:
         """The features of a pose that looks straight ahead: lids follow the eyes, and weights know that."""
@@ -217,12 +191,11 @@ class ShapeSolver:
 
     def _answers(self) -> Doubles:
         shown = np.zeros_like(self.fit.shapes)
-        steps, self.steps = self.steps, _FIRST
+        whole = np.ones(_COUNT, np.bool_)
         for row, place in zip(shown, SKIN_PLACES.tolist(), strict=True):
             weights = np.zeros(_COUNT)
             weights[[place, _OPEN] if place == _CLOSE else place] = 1.0
-            row[:] = self.solve(weights).features
-        self.steps = steps
+            row[:] = self._solved(weights, whole, None, _FIRST).features
         shown[_SKIN_CLOSE] -= shown[_SKIN_OPEN]
         return shown
 

@@ -1,16 +1,15 @@
-""":class:`ArkitStream`: ARKit's weights over time, and the seam where what makes poses of them is plugged in."""
+""":class:`ArkitStream`: ARKit's weights over time."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, Protocol
+from typing import Any
 
 import numpy as np
 
 from agentface.conventions import Doubles, Floats
 from agentface.errors import Fault, InvalidValueError
 from agentface.head.arkit import ARKIT_SHAPES
-from agentface.motion.performance import Performance
 
 ANGLES: tuple[str, ...] = tuple(
     f"{part}{turn}" for part in ("Head", "LeftEye", "RightEye") for turn in ("Yaw", "Pitch", "Roll")
@@ -59,13 +58,3 @@ class ArkitStream:
 
     def __len__(self) -> int:
         return len(self.times_s)
-
-
-class ArkitSolver(Protocol):
-    """What makes a face show ARKit's weights, and reads them off it."""
-
-    def performance(self, stream: ArkitStream) -> Performance:
-        """The poses that show a stream; where it has no frames for long, they let go (``motion.gaps.bridged``)."""
-
-    def stream(self, performance: Performance) -> ArkitStream:
-        """The weights that a performance shows, at its own times."""

@@ -9,6 +9,7 @@ import click
 
 from agentface.commands.ending import Ending, until_told
 from agentface.commands.options import face_options, json_option, make_face, write_json
+from agentface.commands.progress import progress
 from agentface.commands.recordings import Opened, file_fps_option, measured, opened
 from agentface.errors import OutputError
 
@@ -53,7 +54,7 @@ def convert(
     check_writable(output)
     found = opened(source, file_fps)
     with until_told() as ending:
-        recording = _in_terms_of(kind, found, face, deformer, fps, ending)
+        recording = _in_terms_of(kind, found, output, face, deformer, fps, ending)
         if ending.told():
             raise SystemExit(ending.code)
         write(output, kind, recording)
@@ -64,7 +65,7 @@ def convert(
 
 
 def _in_terms_of(
-    kind: FileKind, found: Opened, face: str, deformer: str, fps: float | None, ending: Ending
+    kind: FileKind, found: Opened, output: Path, face: str, deformer: str, fps: float | None, ending: Ending
 ) -> Recording:
     """What is written: the recording itself where it has these terms already."""
     from agentface.io.performances.performing import Performer
@@ -83,7 +84,8 @@ def _in_terms_of(
     if kind.name == "openface":
         return action_units_of(performance)
     if kind.name == "live-link":
-        return Performer(made.model).arkit_solver(found.path).stream(performance)
+        with progress(output.name, len(performance)) as told:
+            return Performer(made.model).arkit_stream(performance, told)
     return performance
 
 

@@ -61,9 +61,10 @@ class Opened:
 
     @property
     def _frames(self) -> float | None:
+        from agentface.arkit.stream import ArkitStream
         from agentface.mpeg4.fap_stream import FapStream
 
-        return len(self.recording) if isinstance(self.recording, FapStream) else None
+        return len(self.recording) if isinstance(self.recording, FapStream | ArkitStream) else None
 
 
 def opened(path: str | Path, file_fps: float | None, *, strict: bool = False) -> Opened:

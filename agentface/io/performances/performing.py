@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable
 from pathlib import Path
 
-from agentface.arkit.stream import ArkitSolver, ArkitStream
+from agentface.arkit.stream import ArkitStream
 from agentface.emotion.inference import default_inference
 from agentface.emotion.score import Score
-from agentface.errors import DataError, Fault
+from agentface.errors import Fault
 from agentface.head.model import HeadModel
 from agentface.io.performances.fap_performance import performance_of_faps
 from agentface.io.performances.kinds import Recording
@@ -23,19 +23,15 @@ class Performer:
 
     Args:
         model: the face.
-        arkit: makes what finds poses of ARKit's weights.
     """
 
-    def __init__(self, model: HeadModel, *, arkit: Callable[[HeadModel], ArkitSolver] | None = None) -> None:
-        self._model, self._arkit = model, arkit
+    def __init__(self, model: HeadModel) -> None:
+        self._model = model
 
     def performance(
         self, recording: Recording, where: str | Path, told: Callable[[int], object] = lambda _: None
     ) -> Performance:
-        """The performance of a recording of the file ``where``; ``told`` gets the number of frames that are done.
-
-        Raises DataError for a kind that this face cannot show.
-        """
+        """The performance of a recording of the file ``where``; ``told`` gets the number of frames that are done."""
         if isinstance(recording, Performance):
             return recording
         if isinstance(recording, ActionUnitStream):
@@ -43,14 +39,21 @@ class Performer:
         if isinstance(recording, Score):
             return performance_of_score(recording, default_inference())
         if isinstance(recording, ArkitStream):
-            return self.arkit_solver(where).performance(recording)
+            return self._of_weights(recording, told)
         return self._of_faps(recording, where, told)
 
-    def arkit_solver(self, where: str | Path) -> ArkitSolver:
-        """What finds poses of ARKit's weights, and weights of poses; raises DataError where there is none."""
-        if self._arkit is None:
-            raise DataError([Fault(Path(where), None, "", "a kind that this version shows", "ARKit's weights")])
-        return self._arkit(self._model)
+    def arkit_stream(self, performance: Performance, told: Callable[[int], object] = lambda _: None) -> ArkitStream:
+        """The weights of ARKit that a performance shows on this face; ``told`` as above."""
+        from agentface.arkit.performances import weights_of_performance
+        from agentface.arkit.shape_solver import ShapeSolver
+
+        return weights_of_performance(performance, ShapeSolver(self._model), told)
+
+    def _of_weights(self, stream: ArkitStream, told: Callable[[int], object]) -> Performance:
+        from agentface.arkit.performances import performance_of_weights
+        from agentface.arkit.shape_solver import ShapeSolver
+
+        return performance_of_weights(stream, ShapeSolver(self._model), told)
 
     def _of_faps(self, stream: FapStream, where: str | Path, told: Callable[[int], object]) -> Performance:
         from agentface.mpeg4.fap_player import FapPlayer
