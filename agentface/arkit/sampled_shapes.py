@@ -51,7 +51,7 @@ def sample_shapes(model: HeadModel) -> SampledShapes:
     vertex, axis = np.repeat(vertices, 3), np.tile(np.arange(3, dtype=np.int32), len(vertices))
     kind, scale = np.full(len(vertex), Kind.SKIN, np.int32), np.full(len(vertex), _MM)
     rest = model.vertices[vertex, axis].astype(np.float64)
-    readings = Readings(kind, vertex, axis, scale, rest, np.zeros((1, 3)))
+    readings = Readings(kind, vertex, axis, scale, rest, np.zeros((1, 3)), np.zeros(3, np.int32))
     share = float(np.sqrt(len(moved) / max(len(vertices), 1)))
     return SampledShapes(readings, dense[:, vertices].reshape(len(dense), -1), share)
 

@@ -1,8 +1,8 @@
 """The 23 muscles as fields of force on the hypodermis (Zhang, Prakash and Sung, section 3.2; the forces are ours).
 
 The paper refers for its three kinds of muscle to a work that prints no formula either. Here a linear muscle pulls
-toward its bone end, within a cone, and may thicken; a sheet along parallel fibres, within a strip; a sphincter toward its centre, on a
-ring. Forces are given for 8 mm2 of skin, so that they do not depend on the mesh.
+toward its bone end, within a cone, and may thicken; a sheet along parallel fibres, within a strip; a sphincter toward
+its centre, on a ring. Forces are given for 8 mm2 of skin, so that they do not depend on the mesh.
 """
 
 from __future__ import annotations
@@ -80,8 +80,13 @@ def unit_field(model: HeadModel, lattice: Lattice, row: MuscleRow, side: str) ->
         centre = 1e3 * anchor_point(row.centre, side, model.landmarks)
         pull = _sphincter(row, points, centre, unit, lattice.normals)
     else:
-        ends = (1e3 * anchor_point(anchor, side, model.landmarks) for anchor in (row.origin, row.insertion))
-        pull = (_sheet if isinstance(row, SheetRow) else _linear)(row, points, *ends, unit)
+        origin, insertion = (
+            1e3 * anchor_point(anchor, side, model.landmarks) for anchor in (row.origin, row.insertion)
+        )
+        if isinstance(row, SheetRow):
+            pull = _sheet(row, points, origin, insertion, unit)
+        else:
+            pull = _linear(row, points, origin, insertion, unit)
     field = reach[:, None] * pull
     lattice.carried.hand_on(field)
     return field

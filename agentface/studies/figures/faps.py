@@ -9,9 +9,9 @@ import numpy as np
 from agentface.conventions import Bytes
 from agentface.deform.pipeline import GeometricDeformer
 from agentface.head.model import HeadModel, load_model
+from agentface.mpeg4.fap_readings import EYES, HEAD
 from agentface.mpeg4.fap_solver import FapSolver
 from agentface.mpeg4.faps import FAP_COUNT, LOW_LEVEL, Fap
-from agentface.mpeg4.fap_readings import EYES, HEAD
 from agentface.resources import face_names
 from agentface.view.camera import Camera
 from agentface.view.contact_sheet import png, sheet
