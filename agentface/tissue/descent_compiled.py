@@ -22,6 +22,7 @@ from agentface.tissue.tissue_file import FORMS
 _COMPONENTS, _SPRINGS = 3, len(AROUND)
 _ENERGY = FORMS.index("energy")
 _TRIANGLE = NODES * (NODES + 1) // 2
+_STRETCH = 128 * LANES
 _NOTHING = np.float32(1e-20)
 _SINGULAR = np.float32(1e-6)
 """What a lane without a column has on its diagonal."""
@@ -277,9 +278,11 @@ def sweep(
 def shift(positions: Floats, rows: Floats, parts: Floats) -> None:
     """Adds ``parts (K,)`` of the ``rows (K, N)`` to the first N coordinates of ``positions``."""
     moved, every = positions.ravel(), rows.ravel()
-    for row in range(parts.shape[0]):
-        part = splat(parts[row])
-        if parts[row] != ZERO:
-            start = row * rows.shape[1]
-            for at in range(0, rows.shape[1], LANES):
-                store(moved, at, load(moved, at) + part * load(every, start + at))
+    for first in range(0, rows.shape[1], _STRETCH):  # which stays in the nearest cache while all rows pass
+        last = min(first + _STRETCH, rows.shape[1])
+        for row in range(parts.shape[0]):
+            part = splat(parts[row])
+            if parts[row] != ZERO:
+                start = row * rows.shape[1]
+                for at in range(first, last, LANES):
+                    store(moved, at, load(moved, at) + part * load(every, start + at))
