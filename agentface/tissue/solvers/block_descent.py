@@ -17,7 +17,7 @@ _TURNS = 4
 """Frames in which every batch has a turn."""
 _RESTLESS_MM, _FAR_MM, _MORE = 0.0015, 0.007, 2
 """A batch whose last turn moved a node farther has one in every frame; beyond the second, up to so many more."""
-_OF_LARGEST = 0.0012
+_OF_LARGEST = 0.0009
 """The same as a part of how far the muscles move the tissue, where that is more."""
 _LONGER = 1.8
 """Of Newton's step a column: frames that lie near to each other bear longer steps than a search from afar."""
