@@ -21,10 +21,14 @@ from agentface.mpeg4.solver import ROUNDS, Problem, Wish
 from agentface.parameters import COUNT, HIGH, LOW, NEUTRAL, PARAMETERS, FacePose, indices_of
 
 _COUNT = len(ARKIT_SHAPES)
-_RIDGE, _BACK = 30.0, 3.0
+_RIDGE, _BACK = 30.0, 100.0
 """mm^2: how strongly rest holds a parameter, and the frame before."""
 _STIFF, _CALLED = 1e4, 0.05
 """mm^2: how strongly rest holds a parameter that serves no shape asked for; the weight of a shape that frees it."""
+_SMALL = 0.05
+"""Of a signed parameter, what says nothing about the way that it is on."""
+_CREEP, _LEAP = 0.05, 4.0
+"""How far a parameter may go in a frame while weights stay, and how many times as far as the one that goes most."""
 _FIRST = 8
 """Steps for what is made once: the face's own answers to single weights."""
 _OWN_RIDGE = 1e-4
@@ -47,12 +51,14 @@ class ArkitSolution:
         pose: what shows them.
         moves: ``(COUNT,)`` bool, the parameters that the weights given move; the others are as they were before.
         looks: how many poses were tried.
+        weights: ``(52,)``, those asked for; 0 for those that were not.
         features: what the solver knows of the pose, for the next frame.
     """
 
     pose: FacePose
     moves: Flags
     looks: int
+    weights: Doubles
     features: Doubles
 
 
@@ -150,14 +156,15 @@ class ShapeSolver:
             prior = self._prior(skin @ self.fit.serves)
             pull = 0.0 if previous is None else _BACK
             wish = Wish(skin @ self.fit.shapes, self._unit, held, prior, pull, steps)
-            looks = int(self._looking.solve(self._sight, self._problem(wish.goal), wish, ahead, features))
+            problem = self._problem(wish.goal, ahead, _reach(asked, previous))
+            looks = int(self._looking.solve(self._sight, problem, wish, ahead, features))
         values[self.fit.free] = ahead[self.fit.free]
         self.eyes.apply(asked, given, values)
         moves = self.eyes.moved(given)
         moves[self.fit.free] = ~held
         if given[_TONGUE]:
             values[_TONGUE_OUT], moves[_TONGUE_OUT] = asked[_TONGUE], True
-        return ArkitSolution(FacePose(values), moves, looks, features)
+        return ArkitSolution(FacePose(values), moves, looks, asked, features)
 
     def _seen(self, values: Floats) -> Doubles:
         """The features of a pose that looks straight ahead: lids follow the eyes, and weights know that."""
@@ -170,12 +177,17 @@ class ShapeSolver:
         idle = 1.0 - np.asarray(smoothstep(0.0, _CALLED, called))
         return np.diag(_RIDGE + _STIFF * idle * idle)
 
-    def _problem(self, goal: Doubles) -> Problem:
-        """The frame's problem: a signed parameter goes the way on which it serves the goal."""
-        fit = self.fit
+    def _problem(self, goal: Doubles, start: Floats, reach: float) -> Problem:
+        """The frame's problem: no parameter goes farther than ``reach`` from where it starts.
+
+        A signed parameter goes on the way that it is on, or on which it serves the goal.
+        """
+        fit, now = self.fit, start[self.fit.free]
         rising, falling = goal @ fit.up / self._norms[0], -goal @ fit.down / self._norms[1]
-        jacobian = np.where(rising >= falling, fit.up, fit.down)
-        return Problem(fit.free, self._low, self._high, jacobian, self._pattern)
+        rises = np.where(np.abs(now) > _SMALL, now > 0.0, rising >= falling)
+        jacobian = np.where(rises, fit.up, fit.down)
+        low, high = np.maximum(self._low, now - reach), np.minimum(self._high, now + reach)
+        return Problem(fit.free, low, high, jacobian, self._pattern)
 
     def _nearest(self, features: Doubles) -> Doubles:
         """``(S,)``: the weights of ``SKIN_SHAPES`` the sum of whose answers is nearest to ``features (K,)``."""
@@ -209,6 +221,13 @@ def arkit_place(name: str) -> int:
     if known not in ARKIT_SHAPES:
         raise UnknownNameError("ARKit weight", name, ARKIT_SHAPES)
     return ARKIT_SHAPES.index(known)
+
+
+def _reach(asked: Doubles, previous: ArkitSolution | FacePose | None) -> float:
+    """How far any parameter may go in a frame: by how much the weights have changed, so that none jumps alone."""
+    if not isinstance(previous, ArkitSolution):
+        return np.inf
+    return float(_CREEP + _LEAP * np.abs(asked - previous.weights).max())
 
 
 def _ahead(values: Floats) -> Floats:

@@ -214,8 +214,6 @@ def test_usage(smile, tmp_path):
     assert "ends in one of" in failed("convert", smile, tmp_path / "a.mp4")
     assert "no folder" in failed("convert", smile, tmp_path / "no" / "a.json")
     assert "no folder" in failed("play", smile, "--fap-out", tmp_path / "no" / "a.fap")
-    assert "ARKit's weights" in failed("play", put(tmp_path, "live-link"), "--fap-out", tmp_path / "a.fap")
-    assert "ARKit's weights" in failed("convert", put(tmp_path, "poses-json"), tmp_path / "a.csv", "--to", "live-link")
     assert not (tmp_path / "a.fap").exists()
 
 
@@ -232,3 +230,16 @@ def test_a_stranger_is_told_what_is_known(tmp_path):
     path = tmp_path / "notes.txt"
     path.write_text("hello")
     assert "MPEG-4 FAPs (.fap)" in failed("play", path, "-o", tmp_path / "a.mp4")
+
+
+def test_weights_of_a_phone_play_and_are_written(tmp_path):
+    take = put(tmp_path, "live-link")
+    done("play", take, "--fap-out", tmp_path / "shown.fap")
+    assert len(read_fap((tmp_path / "shown.fap").read_text())) == 3
+    done("convert", take, tmp_path / "take.npz")
+    done("convert", tmp_path / "take.npz", tmp_path / "again.csv", "--to", "live-link")
+    one, again = (load(path)[1] for path in (take, tmp_path / "again.csv"))
+    assert again.weights.shape == one.weights.shape
+    np.testing.assert_allclose(again.times_s, one.times_s, atol=1e-4)
+    assert 0.0 <= again.weights.min() <= again.weights.max() <= 1.0
+    assert again.angles.any()
