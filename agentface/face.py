@@ -19,9 +19,9 @@ from agentface.emotion.inference import default_inference
 from agentface.emotion.state import EMOTIONS, NEUTRAL, EmotionState, canonical_or_neutral
 from agentface.errors import InvalidValueError
 from agentface.head.model import HeadModel, load_model
-from agentface.motion.faps import STREAM_FADE_S
 from agentface.motion.mixer import Mixer
 from agentface.motion.performance import Performance
+from agentface.motion.stream import STREAM_FADE_S
 from agentface.parameters import CONTRACTIONS, HELD, MUSCLES, FacePose
 from agentface.requests import (
     FADE_S,
@@ -33,6 +33,7 @@ from agentface.requests import (
     Play,
     Request,
     SetActionUnit,
+    SetArkit,
     SetEmotion,
     SetEmotions,
     SetFaps,
@@ -173,6 +174,13 @@ class Face:
         the face lets go of it.
         """
         self.apply(SetFaps(faps, viseme, expression, fade))  # type: ignore[arg-type]  # takes what it makes tuples of
+
+    def set_arkit(self, weights: Mapping[str, float], *, fade: float = STREAM_FADE_S) -> None:
+        """Show some of ARKit's 52 face weights, 0..1 by name, beside those that are still shown.
+
+        Half a second after the last ones the face lets go of them.
+        """
+        self.apply(SetArkit(weights, fade))  # type: ignore[arg-type]  # takes what it makes tuples of
 
     def set_jaw(self, opening: float | None, *, fade: float = FADE_S) -> None:
         """Hold the jaw open at 0..1 of its widest opening; None releases it."""

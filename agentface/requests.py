@@ -14,12 +14,14 @@ from collections.abc import Hashable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Protocol
 
+from agentface.arkit.channel import ARKIT_CHANNEL, ArkitChannel
 from agentface.conventions import check_duration, check_finite, check_fraction, check_range
 from agentface.emotion.state import NEUTRAL, EmotionState, canonical_or_neutral
 from agentface.errors import InvalidValueError, UnknownNameError
 from agentface.facs.action_units import check_intensity, check_side, check_unit
-from agentface.motion.faps import STREAM_FADE_S
+from agentface.head.arkit import ARKIT_SHAPES
 from agentface.motion.performance import Performance
+from agentface.motion.stream import STREAM_FADE_S
 from agentface.mpeg4.fap_stream import EXPRESSION_FIELDS, VISEME_FIELDS, check_fap, check_fields
 from agentface.parameters import PARAMETERS, check_degrees, indices_of, muscle_names, parameter, parameter_names
 
@@ -337,6 +339,40 @@ class SetFaps(Request):
     def apply(self, face: Movable) -> None:
         """Tell the FAPs' channel."""
         face.channels.faps.frame(face.model, dict(self.faps), self.viseme, self.expression, self.fade)
+
+
+@dataclass(frozen=True, slots=True)
+class SetArkit(Request):
+    """Some of ARKit's 52 face weights, beside those that are still shown.
+
+    Attributes:
+        weights: pairs of name and weight 0..1; also a mapping.
+        fade: seconds from the frame before.
+    """
+
+    weights: tuple[tuple[str, float], ...]
+    fade: float = STREAM_FADE_S
+
+    def __post_init__(self) -> None:
+        pairs = tuple(self.weights.items() if isinstance(self.weights, Mapping) else self.weights)
+        for name, _ in pairs:
+            if name not in ARKIT_SHAPES:
+                raise UnknownNameError("ARKit weight", name, ARKIT_SHAPES)
+        checked = {name: check_fraction(name, weight) for name, weight in pairs}
+        self._keep(weights=tuple(sorted(checked.items())), fade=check_duration("fade", self.fade))
+
+    @property
+    def key(self) -> tuple[Hashable, ...]:
+        """Each set of weights by itself."""
+        return type(self).__name__, *(name for name, _ in self.weights)
+
+    def apply(self, face: Movable) -> None:
+        """Tell the weights' channel, which is there from the first of them on."""
+        channel = face.channels.get(ARKIT_CHANNEL)
+        if not isinstance(channel, ArkitChannel):
+            channel = ArkitChannel()
+            face.channels[ARKIT_CHANNEL] = channel
+        channel.change(face.model, dict(self.weights), self.fade)
 
 
 @dataclass(frozen=True, slots=True)

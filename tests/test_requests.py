@@ -75,7 +75,7 @@ def test_every_kind_is_tried_here():
     made = {name for name, kind in vars(requests).items() if isinstance(kind, type) and issubclass(kind, Request)}
     assert made - {"Request"} == {
         "SetEmotion", "SetEmotions", "Neutral", "SetMuscle", "SetParameter", "SetActionUnit", "SetGaze", "LookAt",
-        "SetHead", "Blink", "Play", "SetFap", "SetFaps",
+        "SetHead", "Blink", "Play", "SetFap", "SetFaps", "SetArkit",
     }  # fmt: skip
 
 

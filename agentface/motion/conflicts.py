@@ -16,8 +16,8 @@ from agentface.motion.channel import Rank, parameters_meant
 from agentface.parameters import Way
 from agentface.resources import rules_file
 
-CHANNELS = ("emotion", "gaze", "head", "action_units", "performance", "faps", "blink", "muscles")
-"""The face's own channels, each in a file of this folder; a program adds others."""
+CHANNELS = ("emotion", "gaze", "head", "action_units", "performance", "faps", "arkit", "blink", "muscles")
+"""The face's own channels; a program adds others."""
 
 
 def _target(key: str) -> str:

@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from agentface.conventions import Doubles, Floats
+from agentface.conventions import Floats
 from agentface.head.model import HeadModel
-from agentface.motion.playing import PerformanceChannel
+from agentface.motion.stream import STREAM_FADE_S, StreamChannel
 from agentface.mpeg4.fap_stream import EXPRESSION, EXPRESSION_FIELDS, VISEME, VISEME_FIELDS, Mask
 from agentface.mpeg4.fap_table import FAP_COUNT
 from agentface.parameters import COUNT, NEUTRAL
@@ -18,15 +18,11 @@ if TYPE_CHECKING:
     from agentface.mpeg4.fap_player import FapPlayer
     from agentface.mpeg4.fap_solver import FapSolution
 
-STREAM_FADE_S = 0.04
-"""Over so long one frame of a stream goes over into the next: as long as frames of 25 a second are apart."""
+_NO_FIELDS = (0,) * len(VISEME_FIELDS), (0,) * len(EXPRESSION_FIELDS)
 
 
-class FapChannel(PerformanceChannel):
-    """The newest frame of FAPs, held for ``HOLD_S`` and then let go of within ``LET_GO_S``.
-
-    It moves what its FAPs determine and leaves the rest to others. The solver is made with the first frame.
-    """
+class FapChannel(StreamChannel):
+    """FAPs of MPEG-4. The solver is made with the first frame."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -34,17 +30,13 @@ class FapChannel(PerformanceChannel):
         self._fields: tuple[tuple[int, ...], tuple[int, ...]] = _NO_FIELDS
         self._player: FapPlayer | None = None
         self._found: FapSolution | None = None
-        self._new_for: HeadModel | None = None
-        self._fade = STREAM_FADE_S
 
     def change(self, model: HeadModel, faps: Mapping[int, float], fade: float = STREAM_FADE_S) -> None:
         """Some low-level FAPs by number, beside those that are still shown."""
-        if not self.playing and self._new_for is None:
+        if self.fresh:
             self._mask[:] = False
             self._fields = _NO_FIELDS
-        for number, value in faps.items():
-            self._values[number - 1], self._mask[number - 1] = value, True
-        self._new_for, self._fade = model, fade
+        self._put(model, faps, fade)
 
     def frame(
         self,
@@ -58,31 +50,10 @@ class FapChannel(PerformanceChannel):
         self._mask[:] = False
         self._mask[[VISEME, EXPRESSION]] = viseme is not None, expression is not None
         self._fields = viseme or _NO_FIELDS[0], expression or _NO_FIELDS[1]
-        for number, value in faps.items():
-            self._values[number - 1], self._mask[number - 1] = value, True
-        self._new_for, self._fade = model, fade
+        self._put(model, faps, fade)
 
-    def release(self, fade: float) -> None:
-        """Let go within ``fade`` seconds."""
-        self._new_for = None
-        super().release(fade)
-
-    def advance(self, dt: float) -> None:
-        """Let ``dt`` seconds pass."""
-        self._show_new()
-        super().advance(dt)
-
-    def write(self, values: Doubles, weights: Doubles) -> bool:
-        """What is shown now, and how much of each parameter it moves."""
-        self._show_new()
-        return super().write(values, weights)
-
-    def _show_new(self) -> None:
-        model, self._new_for = self._new_for, None
-        if model is not None:
-            self.show(*self._solved(model), self._fade)
-
-    def _solved(self, model: HeadModel) -> tuple[Floats, Floats]:
+    def solved(self, model: HeadModel) -> tuple[Floats, Floats]:
+        """The frame that waits, as values and weights ``(COUNT,)``, on a face."""
         if self._player is None:
             from agentface.mpeg4.fap_player import FapPlayer
             from agentface.mpeg4.fap_solver import FapSolver
@@ -94,5 +65,7 @@ class FapChannel(PerformanceChannel):
         moved = found.moves | high
         return np.where(moved, found.pose.array, NEUTRAL), moved.astype(np.float32).reshape(COUNT)
 
-
-_NO_FIELDS = (0,) * len(VISEME_FIELDS), (0,) * len(EXPRESSION_FIELDS)
+    def _put(self, model: HeadModel, faps: Mapping[int, float], fade: float) -> None:
+        for number, value in faps.items():
+            self._values[number - 1], self._mask[number - 1] = value, True
+        self.arrived(model, fade)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from agentface import Face
-from agentface.errors import InvalidValueError
+from agentface.errors import InvalidValueError, UnknownNameError
 from agentface.io.osc.addresses import Addresses
 from agentface.motion.performance import HOLD_S, LET_GO_S
 from agentface.mpeg4.fap_table import FAP_COUNT
@@ -123,3 +123,23 @@ def test_a_message_with_another_count_is_refused(cut):
         Addresses("amber").read("/agentface/faps", frame({5: -100, 3: 7})[:-cut])
     with pytest.raises(InvalidValueError):
         Addresses("amber").read("/agentface/faps", [*frame({5: -100}), *[0] * cut])
+
+
+def test_arkit_weights_move_what_they_name_and_let_go():
+    face = Face(head_model())
+    face.set_arkit({"jawOpen": 0.5}, fade=0)
+    assert face.pose["jaw_open"] == pytest.approx(0.5, abs=0.06)
+    assert face.channels.drivers().keys() == {"arkit"}
+    face.apply(Addresses("amber").read("/agentface/arkit", ["eyeBlinkLeft", 1.0]))
+    face.channels.advance(0.05)
+    pose = face.channels.pose()
+    assert pose["orbicularis_oculi_palpebralis_l"] > 0.5
+    assert pose["jaw_open"] == pytest.approx(0.5, abs=0.06)
+    face.channels.advance(2.0)
+    assert face.channels.pose() == FacePose()
+
+
+@pytest.mark.parametrize("arguments", [[], ["jawOpen"], ["jawOpne", 0.5], ["jawOpen", 1.5], [3, 0.5]])
+def test_other_arkit_weights_are_refused(arguments):
+    with pytest.raises((InvalidValueError, UnknownNameError)):
+        Addresses("amber").read("/agentface/arkit", arguments)

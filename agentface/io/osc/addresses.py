@@ -17,6 +17,7 @@ from agentface.requests import (
     Neutral,
     Request,
     SetActionUnit,
+    SetArkit,
     SetEmotion,
     SetEmotions,
     SetFap,
@@ -138,6 +139,13 @@ def _au(arguments: Sequence[Any]) -> Request:
     return SetActionUnit(*arguments)
 
 
+def _arkit(arguments: Sequence[Any]) -> Request:
+    form = "pairs of name and weight"
+    if not arguments or len(arguments) % 2:
+        raise InvalidValueError("arguments", form, len(arguments), f"send {form}")
+    return SetArkit(tuple(zip(arguments[::2], arguments[1::2], strict=True)))
+
+
 def _fap(arguments: Sequence[Any]) -> Request:
     _count(arguments, "number value", 2, 2)
     return SetFap(*arguments)
@@ -213,6 +221,7 @@ _READERS: dict[str, Reader] = {
     "muscle": _muscle,
     "parameter": _parameter,
     "au": _au,
+    "arkit": _arkit,
     "fap": _fap,
     "faps": _faps,
     "gaze": _gaze,
