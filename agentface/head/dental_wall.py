@@ -49,13 +49,12 @@ class Wall:
         return np.asarray((self.width - clear) * np.sqrt(1.0 - along * along))
 
 
-def fit_wall(row: MeshArrays, name: str) -> Wall:
-    """The largest such ellipse with the teeth of ``row`` (``teeth_upper`` or ``teeth_lower``) outside it."""
+def fit_wall(row: MeshArrays, name: str, middle: float = 0.0) -> Wall:
+    """The largest such ellipse about ``middle`` m with the teeth of ``row``, the part of that ``name``, outside it."""
     points = row.attributes["POSITION"].astype(np.float64)
     tooth = row.attributes["_MATERIAL"][:, 0] > 0
     upper = name == "teeth_upper"
     edge = float(points[tooth, 1].min() if upper else points[tooth, 1].max())
-    middle = 0.5 * float(points[:, 0].min() + points[:, 0].max())
     near = points[np.abs(points[:, 1] - edge) < _DEEP[name]]
     aside = np.abs(near[:, 0] - middle)
     front, back = float(near[aside < _MIDDLE, 2].min()), float(points[tooth, 2].min())
@@ -74,7 +73,8 @@ def between_the_teeth(tongue: MeshArrays, teeth: dict[str, MeshArrays]) -> MeshA
     walls = [fit_wall(row, name) for name, row in teeth.items()]
     drawn = tongue.attributes["POSITION"].astype(np.float64)
     points = drawn.copy()
-    middle, root, tip = walls[0].middle, points[:, 2].min(), points[:, 2].max()
+    middle = 0.5 * float(points[:, 0].min() + points[:, 0].max())  # its own: it stays its mirror image
+    root, tip = points[:, 2].min(), points[:, 2].max()
     room = min(wall.front for wall in walls) - _BLUNT - root
     points[:, 2] = root + (points[:, 2] - root) * min(1.0, room / (tip - root))
     at = np.linspace(points[:, 2].min(), points[:, 2].max(), _STATIONS)

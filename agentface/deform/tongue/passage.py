@@ -61,7 +61,7 @@ def prepare(model: HeadModel) -> Passage:
     """That of a face."""
     walls = []
     for name in ROWS:
-        wall, arch = fit_wall(model.parts[name], name), fit_arch(model, name)
+        wall, arch = fit_wall(model.parts[name], name, float(model.part_moves[name][0])), fit_arch(model, name)
         walls.append([wall.middle, wall.back, wall.depth - CLEAR, wall.width - CLEAR, wall.edge, arch.front, arch.bend])
     rings = model.lips.rings[: LipRing.BORDER + 1]
     upper, lower = (
