@@ -28,7 +28,7 @@ _SHUT, _CLOSED, _SHARES = 2.0, 6.0, 0.25
 """The weight of an eye's being shut beside one for each lid; of one that is to be closed, and of its lids then."""
 _CLOSING, _AJAR = 0.85, 0.03
 """Of the way to closed: an eye that is to be farther is to be closed, whatever its lids share of it; what is ajar."""
-_SERVES = 0.3
+_SERVES = 0.5
 """Of a parameter's largest effect: FAPs that it does less for do not move it by themselves."""
 _TOLD = 0.05
 """Of a FAP's range: what is missed by more is told."""

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
+
 from agentface.conventions import Doubles, Floats, Indices
 from agentface.deform.geometry import FaceArrays
 from agentface.kernel import kernel
@@ -50,5 +52,5 @@ def _below(face: FaceArrays, vertex: int, axis: int) -> float:
 def _rolled(roll: Indices, tongue: Floats) -> float:
     """The angle from the tongue's middle up to its borders."""
     left, right, middle = roll[0], roll[1], roll[2]
-    up = 0.5 * (tongue[left, 1] + tongue[right, 1]) - tongue[middle, 1]
-    return math.atan2(up, 0.5 * (tongue[left, 0] - tongue[right, 0]))
+    up = 0.5 * (np.float64(tongue[left, 1]) + np.float64(tongue[right, 1])) - np.float64(tongue[middle, 1])
+    return math.atan2(up, 0.5 * (np.float64(tongue[left, 0]) - np.float64(tongue[right, 0])))

