@@ -19,7 +19,9 @@ from tests.clocks import ManualClock
 from tests.deform.jelly import Jelly
 from tests.heads import head_model
 
-KEYS = ["face", "emotion", "shown", "speech", "gaze_deg", "frame_ms", "messages", "errors"]
+KEYS = [
+    "face", "emotion", "shown", "action_units", "drivers", "speech", "gaze_deg", "frame_ms", "messages", "errors",
+]  # fmt: skip
 
 
 @pytest.fixture(scope="module")

@@ -79,7 +79,7 @@ def test_faps_that_are_played_are_measured_frame_by_frame(smile, tmp_path):
     assert shown.mask[:, 2:].all()
     given = asked.mask.any(axis=0)
     missed = np.abs(shown.values - asked.values)[:, given]
-    assert (missed <= 0.04 * np.abs(asked.values[:, given]).max(axis=0) + 1).all()
+    assert (missed <= 0.06 * np.abs(asked.values[:, given]).max(axis=0) + 1).all()
     assert missed[0].max() <= 1, "the first frame is hit, and the face does not come to it from rest"
 
 

@@ -11,7 +11,16 @@ from agentface.deform.order import Stage
 from agentface.parameters import FacePose
 from tests.heads import deformer_of, head_model
 
-POSE = FacePose.of(frontalis_medialis=1.0, jaw_open=0.4, gaze_yaw=0.2, head_yaw=0.4, head_roll=-0.1)
+POSE = FacePose.of(
+    frontalis_medialis=1.0,
+    jaw_open=0.4,
+    gaze_yaw=0.2,
+    head_yaw=0.4,
+    head_roll=-0.1,
+    tongue_out=0.5,
+    pupil_dilation=0.5,
+    eye_thrust=0.5,
+)
 
 
 @pytest.mark.parametrize("compiled", [False, True])

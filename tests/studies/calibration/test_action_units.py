@@ -29,20 +29,8 @@ def test_no_muscle_is_in_two_groups_and_no_unit_is_lost(units):
 
 def test_units_of_lids_lips_and_jaw_are_not_fitted():
     units = load_action_units()
-    assert {number for number, unit in units.items() if not unit.fitted} == {
-        5,
-        7,
-        18,
-        22,
-        23,
-        24,
-        25,
-        26,
-        27,
-        28,
-        43,
-        45,
-    }
+    measured = {number for number, unit in units.items() if unit.shapes and not unit.fitted}
+    assert measured == {5, 7, 14, 18, 22, 23, 24, 25, 26, 27, 28, 29, 30, 34, 43, 45}
     assert {unit.number for group in groups(list(units.values())) for unit in group.units} == {
         number for number, unit in units.items() if unit.fitted
     }
@@ -77,7 +65,7 @@ def test_all_faults_of_the_table_are_found_at_once(tmp_path):
         ("mentalis: 1.0", "mentalis: 1.5", "mentalis"),
         ("mentalis: 1.0", "mentalis: 0", "mentalis"),
         ("{mentalis: 1.0}", "{}", "muscles"),
-        ("{mouthShrugLower: 1.0}", "{}", "shapes"),
+        ("{mouthShrugLower: 1.0}", "{mouthShrugLower: 2.0}", "shapes"),
         ("name: chin raiser", "title: chin raiser", "title"),
         ("  17:", "  seventeen:", "seventeen"),
     ],
