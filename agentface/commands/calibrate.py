@@ -120,7 +120,7 @@ def _fit(face: str, deformer: str, starts: int, seed: int, dry_run: bool, json_f
     if json_file is not None:
         write_json(json_file, {"before": _figures(before, deformer), "after": _figures(after, deformer)})
     if json_file != "-":
-        _print({number: unit.name for number, unit in load_action_units().items()}, before, after)
+        _print({number: unit.name for number, unit in load_action_units().items() if number in after}, before, after)
     for sentence in missed(after, limits_of(deformer)):
         click.echo(f"agentface: {sentence}", err=True)
     if not dry_run:

@@ -36,7 +36,7 @@ _LIP_M, _CORNER_M = 0.004, 0.012
 """m above and below the lips' line over which that is so for upper and lower lip, in the middle and at the corners."""
 _LOWEST = 1e-5  # m, what is not worth a store
 _EAR, _EAR_EVENINGS = 3, 24
-_EVENINGS = 6  # artists' shapes end abruptly where two of them are never seen together, as below the nose
+_EVENINGS = 20  # artists' shapes end abruptly where two of them are never seen together, as below the nose
 MORPHED: tuple[str, ...] = tuple(
     dict.fromkeys(known.name[:-2] if known.partner else known.name for known in PARAMETERS if known.morphs)
 )

@@ -87,7 +87,7 @@ def test_a_half_of_a_lip_is_one_muscle(face):
     assert not moved(face, posed(**{press: 1.0, "orbicularis_oris_pucker": 1.0})).any()
     beside = moved(face, posed(**{press: 0.5, "orbicularis_oris_funnel_lower_r": 1.0}))
     far = head_model(face).vertices[:, 0] > 0.02
-    np.testing.assert_allclose(beside[far], 0.5 * one[far], atol=5e-5)
+    np.testing.assert_allclose(beside[far], 0.5 * one[far], atol=2e-4)
 
 
 @pytest.mark.parametrize("face", FACES)

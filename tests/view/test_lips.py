@@ -24,7 +24,9 @@ def model(request):
 def puckered(model):
     tables = deformer.prepare(model)
     points = np.concatenate([model.vertices, tables.control_rest])
-    deformer.contract(tables, FacePose.of(orbicularis_oris_pucker=1.0).array, points)
+    deformer.contract(
+        tables, FacePose.of(orbicularis_oris_pucker=1.0).array, deformer.as_they_lie(tables, points), points
+    )
     deformer.surface(tables, points)
     return points[: len(model.vertices)]
 

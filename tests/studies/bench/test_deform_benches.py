@@ -60,7 +60,9 @@ def test_an_unknown_benchmark_is_told():
 
     with pytest.raises(UnknownNameError, match="papers"):
         run("paper")
-    assert set(BENCHES) == {"deform", "papers", "frame", "crowd", "fuzzy", "render", "start", "texture", "tissue"}
+    assert set(BENCHES) == {
+        "deform", "papers", "frame", "crowd", "fuzzy", "render", "start", "texture", "tissue", "mpeg4", "arkit",
+    }  # fmt: skip
 
 
 # The paper's Table 1.
