@@ -69,7 +69,7 @@ class FapSolver:
     Raises InvalidValueError for ``steps`` that is no number from 1 on.
     """
 
-    def __init__(self, model: HeadModel, *, steps: int = 3, compiled: bool = True) -> None:
+    def __init__(self, model: HeadModel, *, steps: int = 4, compiled: bool = True) -> None:
         if isinstance(steps, bool) or not isinstance(steps, int) or steps < 1:
             raise InvalidValueError("steps", "a number from 1 on", steps)
         self.model, self.steps = model, steps
