@@ -1,0 +1,49 @@
+""":class:`Request`, what every kind of them is, and what it reaches."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Hashable
+from typing import TYPE_CHECKING, Protocol
+
+if TYPE_CHECKING:
+    from agentface.head.model import HeadModel
+    from agentface.motion.mixer import Mixer
+
+FADE_S = 0.25
+"""What an emotion or a muscle takes to come, unless a request says otherwise."""
+
+
+class Movable(Protocol):
+    """What a request reaches: a face's model and what moves it."""
+
+    @property
+    def model(self) -> HeadModel:
+        """The head."""
+
+    @property
+    def channels(self) -> Mixer:
+        """The channels by name."""
+
+
+class Request(ABC):
+    """Something that is asked of a face.
+
+    A subclass is a frozen dataclass of immutable values that checks them when it is made and raises UnknownNameError
+    or InvalidValueError.
+    """
+
+    __slots__ = ()
+
+    @property
+    def key(self) -> tuple[Hashable, ...]:
+        """What it is about: of requests with the same key that wait for the same frame, only the newest counts."""
+        return (type(self).__name__,)
+
+    @abstractmethod
+    def apply(self, face: Movable) -> None:
+        """Tell the channels; called by ``Face.apply`` alone. What raises has changed nothing."""
+
+    def _keep(self, **checked: object) -> None:
+        for name, value in checked.items():
+            object.__setattr__(self, name, value)
