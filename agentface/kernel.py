@@ -20,7 +20,16 @@ from agentface.cache import tell_no_cache, version_folder
 
 _F = TypeVar("_F", bound=Callable[..., Any])
 _PACKAGE = Path(__file__).parent
-_ROOMS = ("deform", "emotion", "mesh", "mpeg4", "tissue")
+_READS: dict[str, tuple[str, ...]] = {
+    "mesh": (),
+    "emotion": (),
+    "deform": ("mesh",),
+    "tissue": ("mesh", "deform"),
+    "mpeg4": ("mesh", "deform", "emotion"),
+}
+"""The rooms that have kernels, and the others that each of them reads: an edit elsewhere leaves its kernels good."""
+_ABOVE = {"__init__.py", "__main__.py", "cli.py", "face.py"}
+"""Modules of the package itself that no room reads."""
 
 
 def can_compile() -> bool:
@@ -32,7 +41,7 @@ def can_compile() -> bool:
 
 def any_kept() -> bool:
     """Whether kernels of these sources have been kept on this machine: without any, a first face waits for them."""
-    folder = _folder()
+    folder = _folder("deform")
     return folder is not None and any(folder.rglob("*.nbi"))
 
 
@@ -41,7 +50,7 @@ def kernel(**options: Any) -> Callable[[_F], _F]:
     from numba import njit
 
     def compile_later(function: _F) -> _F:
-        folder = _folder()
+        folder = _folder(_room_of(function))
         with _cached_in(folder):
             compiled = njit(cache=folder is not None, nogil=True, **options)(function)
         return _careful(compiled) if folder is not None else compiled
@@ -60,18 +69,25 @@ def compiled_twin(function: Callable[..., Any], module: dict[str, Any], **option
     return kernel(**options)(twin)
 
 
+def _room_of(function: Callable[..., Any]) -> str:
+    """The room of the module that a kernel is written in; the empty name for one that is none of ours."""
+    room = f"{function.__module__}..".split(".")[1]
+    return room if room in _READS else ""
+
+
 @cache
-def _folder() -> Path | None:
-    """Where this version's kernels are kept, or None where nothing can be."""
+def _folder(room: str) -> Path | None:
+    """Where this version's kernels of a room are kept, or None where nothing can be."""
     from numba import __version__ as numba_version
 
-    return version_folder("kernels", _sources(), numba_version) if can_compile() else None
+    return version_folder(f"kernels/{room}", _sources(room), numba_version) if can_compile() else None
 
 
-def _sources() -> Iterator[Path]:
-    yield from sorted(_PACKAGE.glob("*.py"))
-    for room in _ROOMS:
-        yield from sorted((_PACKAGE / room).rglob("*.py"))
+def _sources(room: str) -> Iterator[Path]:
+    """What kernels of a room are made of; those of another package, of all rooms."""
+    yield from sorted(path for path in _PACKAGE.glob("*.py") if path.name not in _ABOVE)
+    for read in sorted((*_READS[room], room) if room else _READS):
+        yield from sorted((_PACKAGE / read).rglob("*.py"))
 
 
 @contextmanager

@@ -10,6 +10,7 @@ from pathlib import Path
 import pytest
 
 from agentface import cache, kernel
+from tests.test_imports import inner_imports
 
 STEP = """
 import sys
@@ -46,7 +47,7 @@ def test_numba_may_be_forbidden_to_compile():
 
 
 def test_a_disk_that_fills_loses_the_cache_alone(tmp_path, monkeypatch, caplog):
-    monkeypatch.setattr(kernel, "_folder", lambda: tmp_path)
+    monkeypatch.setattr(kernel, "_folder", lambda room: tmp_path)
     monkeypatch.setattr(cache, "_told", set())
     twice = kernel.kernel()(_twice)
 
@@ -64,21 +65,35 @@ def test_kernels_are_kept_by_the_sources_they_are_made_of(tmp_path, monkeypatch)
     sources = [tmp_path / "one.py", tmp_path / "two.py"]
     for source in sources:
         source.write_text("STEP = 0.2")
-    monkeypatch.setattr(kernel, "_sources", lambda: iter(sources))
-    before = kernel._folder.__wrapped__()
-    assert before == kernel._folder.__wrapped__()
+    monkeypatch.setattr(kernel, "_sources", lambda room: iter(sources))
+    before = kernel._folder.__wrapped__("deform")
+    assert before == kernel._folder.__wrapped__("deform")
     sources[1].write_text("STEP = 0.1")
-    after = kernel._folder.__wrapped__()
+    after = kernel._folder.__wrapped__("deform")
     assert before != after
     assert before.is_dir()
     assert after.is_dir()
 
 
 def test_every_source_that_a_kernel_reads_counts():
-    sources = {path.relative_to(Path(kernel.__file__).parent).as_posix() for path in kernel._sources()}
     package = Path(kernel.__file__).parent
-    assert {path.relative_to(package).as_posix() for path in package.rglob("*_compiled.py")} <= sources
-    assert {"parameters.py", "deform/mouth/contact.py", "emotion/sets.py", "mesh/normals_compiled.py"} <= sources
+    with_kernels = {path.relative_to(package).parts[0] for path in package.rglob("*_compiled.py")}
+    assert with_kernels == set(kernel._READS)
+    for room, others in kernel._READS.items():
+        sources = set(kernel._sources(room))
+        assert {package / "parameters.py", package / "kernel.py"} <= sources
+        for read in (room, *others):
+            assert set((package / read).rglob("*.py")) <= sources
+    assert set(kernel._sources("")) >= {source for room in kernel._READS for source in kernel._sources(room)}
+
+
+def test_rooms_read_no_others_than_the_table_of_kernels_says():
+    rooms = set(kernel._READS)
+    for room, other, place in inner_imports():
+        if room in rooms and other in rooms:
+            assert other in kernel._READS[room], place
+    plain = {name.removesuffix(".py") for name in kernel._ABOVE}
+    assert not [place for room, other, place in inner_imports() if room in rooms and other in plain]
 
 
 def test_a_user_s_own_cache_folder_stays_the_user_s():

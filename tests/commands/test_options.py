@@ -57,7 +57,7 @@ def test_what_is_no_terminal_is_told_nothing(monkeypatch, screen):
 
 def test_kernels_are_kept_once_one_is_compiled(tmp_path, monkeypatch):
     for folder, kept in ((None, False), (tmp_path, False)):
-        monkeypatch.setattr(kernel, "_folder", lambda folder=folder: folder)
+        monkeypatch.setattr(kernel, "_folder", lambda room, folder=folder: folder)
         assert kernel.any_kept() is kept
     twice = kernel.kernel()(lambda number: number + number)
     assert not kernel.any_kept()
