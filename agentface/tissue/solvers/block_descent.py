@@ -17,8 +17,9 @@ _TURNS = 4
 """Frames in which every batch has a turn."""
 _RESTLESS_MM, _FAR_MM, _MORE = 0.0015, 0.007, 2
 """A batch whose last turn moved a node farther has one in every frame; beyond the second, up to so many more."""
-_OF_LARGEST = 0.0009
-"""The same as a part of how far the muscles move the tissue, where that is more."""
+_RESTLESS, _FAR = 1.7e-5, 1e-4
+"""1/mm: the same, times the square of how far the muscles move the tissue, where that is more: what the responses miss
+is of the second order."""
 _LONGER = 1.8
 """Of Newton's step a column: frames that lie near to each other bear longer steps than a search from afar."""
 _EVERY = 1.0
@@ -86,9 +87,10 @@ class BlockDescent:
         loads = np.tensordot(contractions.astype(np.float32), tables.loads, 1)
         self._frame = (self._frame + 1) % _TURNS
         turn = self._batches % _TURNS == self._frame
-        chosen = self._batches[turn | (self._moved > _RESTLESS_MM**2)]
+        square = float((contractions * self._largest).max()) ** 2
+        restless, far = max(_RESTLESS_MM, _RESTLESS * square), max(_FAR_MM, _FAR * square)
+        chosen = self._batches[turn | (self._moved > restless**2)]
         sweep(tables.columns, self.positions, loads, chosen, len(chosen), _LONGER, self._moved)
-        far = max(_FAR_MM, _OF_LARGEST * float((contractions * self._largest).max()))
         for _ in range(_MORE):
             chosen = chosen[self._moved[chosen] > far**2]
             sweep(tables.columns, self.positions, loads, chosen, len(chosen), _LONGER, self._moved)
