@@ -30,6 +30,9 @@ _CLOSING, _AJAR = 0.85, 0.03
 """Of the way to closed: an eye that is to be farther is to be closed, whatever its lids share of it; what is ajar."""
 _SERVES = 0.5
 """Of a parameter's largest effect: FAPs that it does less for do not move it by themselves."""
+_ENOUGH, _FELT, _ALIKE = 0.2, 0.02, 0.8
+"""Of the best parameter's effect on a FAP that is asked for more than ``_FELT`` of its range: where those that serve it
+do less than ``_ENOUGH`` of it, the best may move, too, and all that do more than ``_ALIKE`` of it."""
 _TOLD = 0.05
 """Of a FAP's range: what is missed by more is told."""
 
@@ -85,6 +88,8 @@ class FapSolver:
         self._tikhonov = _ZERO * np.eye(free)
         effect = np.abs(self.fit.problem.jacobian[:count])
         self._serves = effect > _SERVES * np.maximum(effect.max(axis=0, initial=0.0), 1e-9)
+        ends = [self.fit.problem.jacobian[:count] * end for end in (self.fit.problem.low, self.fit.problem.high)]
+        self._does = np.maximum(*ends), -np.minimum(*ends)
         self._shut_rows = [np.isin(self.meter.columns, np.array(pair) - 1) for pair in LIDS]
 
     def solve(
@@ -110,7 +115,7 @@ class FapSolver:
             self._look(self._sight, values, features)
         elif angles.any():
             features += self.fit.gaze @ angles
-        held: Mask = np.logical_not(self._serves[weight[: len(self._serves)] > 0.0].any(axis=0))
+        held = np.logical_not(self._moved_by(goal, weight))
         prior = self._tikhonov if whole else self.fit.natural
         pull = _BEGIN if previous is None else _BACK
         wish = Wish(goal, weight, held, prior, pull, self.steps)
@@ -152,6 +157,16 @@ class FapSolver:
         away = np.zeros(1) if goal is None else ((self.fit.shown - goal) ** 2).sum(axis=1)
         nearest = int(away.argmin())
         return self.fit.starts[nearest].copy(), self.fit.shown[nearest].copy()
+
+    def _moved_by(self, goal: Doubles, weight: Doubles) -> Mask:
+        """``(F,)``: the parameters that the FAPs asked for move."""
+        asked = weight[: len(self._serves)] > 0.0
+        moved: Mask = self._serves[asked].any(axis=0)
+        for row in np.flatnonzero(asked & (np.abs(goal[: len(asked)]) > _FELT)):
+            does = self._does[int(goal[row] < 0.0)][row]
+            if does.max(initial=0.0, where=self._serves[row]) < _ENOUGH * does.max():
+                moved |= does > _ALIKE * does.max()
+        return moved
 
     def _closing(self, weight: Doubles, closing: Doubles) -> Doubles:
         """Weights for eyes that are to be closed as far as ``closing`` says: the sum of an eye's lids before each."""

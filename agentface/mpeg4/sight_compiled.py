@@ -1,7 +1,7 @@
 """What a pose would show, compiled; the numpy twin is :mod:`agentface.mpeg4.sight`.
 
-A look is a frame without what no feature tells: creases beside lids and lips, midpoints, and all of the finish but
-eyes, jaw and tongue.
+A look is a frame without what no feature tells: creases beside lids and lips, midpoints, all of the finish but eyes,
+jaw and tongue, and of the tongue all vertices that are not read.
 """
 
 from __future__ import annotations
@@ -17,9 +17,10 @@ from agentface.deform.geometry import FaceArrays, FaceGeometry
 from agentface.deform.order import Stage
 from agentface.deform.order_compiled import Scratch, finish, shape
 from agentface.deform.tables import FaceTables
+from agentface.deform.tongue.tables import PER_VERTEX, TongueTables
 from agentface.head.model import HeadModel
 from agentface.kernel import kernel
-from agentface.mpeg4.readings import Readings
+from agentface.mpeg4.readings import Kind, Readings
 from agentface.mpeg4.readings_compiled import read
 from agentface.mpeg4.sight import Features
 
@@ -42,11 +43,23 @@ class Sight(NamedTuple):
 
 def new_sight(model: HeadModel, features: Features) -> Sight:
     """A sight of its own scratch: one look at a time."""
-    shared = tables.of(model)
-    readings = features.readings
-    face = FaceGeometry.at_rest(model).arrays()
+    whole = tables.of(model)
+    tongue, readings = _read_of_tongue(whole.finish.tongue, features.readings)
+    shared = whole._replace(finish=whole.finish._replace(tongue=tongue))
+    face = FaceGeometry.at_rest(model).arrays()._replace(tongue=tongue.rest.copy())
     matrix = np.ascontiguousarray(features.matrix, np.float64)
     return Sight(shared, order_compiled.new_scratch(shared), face, readings, matrix, np.zeros(len(readings.kind)))
+
+
+def _read_of_tongue(tongue: TongueTables, readings: Readings) -> tuple[TongueTables, Readings]:
+    """A tongue of the vertices that are read, which move without each other, and the readings of these."""
+    places = readings.kind == Kind.TONGUE
+    used, rows = np.unique(np.append(readings.vertex[places], readings.roll), return_inverse=True)
+    vertex = readings.vertex.copy()
+    vertex[places] = rows[: places.sum()]
+    roll = rows[places.sum() :].astype(readings.roll.dtype)
+    few = {name: np.ascontiguousarray(getattr(tongue, name)[used]) for name in PER_VERTEX}
+    return tongue._replace(**few), readings._replace(vertex=vertex, roll=roll)
 
 
 @kernel(error_model="numpy")

@@ -24,7 +24,7 @@ ROUNDS, SWEEPS, SMALL = 4, 3, 1e-4
 """Rounds of the minimum in a box at most, sweeps a round, and the change from which on a further sweep is worth it."""
 DAMP, EASE, FIRM = 0.03, 0.3, 4.0
 """The least damping after a step that made it worse, and its factors after a good and a bad step."""
-FLAT, STILL, NEAR = 2e-3, 2e-3, 4e-3
+FLAT, STILL, NEAR = 2e-3, 2e-3, 8e-3
 """A gain, as part of what is left, a step, and a feature's miss, from which on a further step is not worth it."""
 SHORT = 1e-8  # a squared step that tells nothing of the Jacobian
 SHARE = 1e-3  # of a squared step, the least part that a row's update is divided by

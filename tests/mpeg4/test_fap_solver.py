@@ -122,6 +122,14 @@ def test_a_mouth_that_is_told_alone_is_shown():
         assert not found.pose.array[[NAMES.index("head_yaw"), NAMES.index("gaze_yaw")]].any()
 
 
+@pytest.mark.parametrize("face", FACES)
+def test_a_tongue_that_is_told_to_come_out_of_an_open_mouth_comes_out(face):
+    found = solver_of(face).solve(*only(open_jaw=700.0, thrust_tongue_tip=700.0))
+    assert found.shown[fap("thrust_tongue_tip").number - 1] == pytest.approx(700.0, rel=0.1)
+    assert found.pose["tongue_out"] > 0.4
+    assert not solver_of(face).solve(*only(thrust_tongue_tip=700.0)).pose["jaw_open"], "the jaw is not named"
+
+
 def test_what_is_out_of_reach_is_told_and_clamped():
     solver = solver_of("amber")
     found = solver.solve(*only(raise_l_i_eyebrow=1800, raise_r_i_eyebrow=1800))

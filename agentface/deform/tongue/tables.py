@@ -58,6 +58,10 @@ class TongueTables(NamedTuple):
     passage: Passage
 
 
+PER_VERTEX = "rest", "arm", "arm_out", "station", "part"
+"""Those of :class:`TongueTables` that have a row for each vertex."""
+
+
 def prepare(model: HeadModel) -> TongueTables:
     """The tables of a face."""
     mesh = model.parts["tongue"]
