@@ -6,7 +6,7 @@ jaw and tongue, and of the tongue all vertices that are not read.
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -58,7 +58,7 @@ def _read_of_tongue(tongue: TongueTables, readings: Readings) -> tuple[TongueTab
     vertex = readings.vertex.copy()
     vertex[places] = rows[: places.sum()]
     roll = rows[places.sum() :].astype(readings.roll.dtype)
-    few = {name: np.ascontiguousarray(getattr(tongue, name)[used]) for name in PER_VERTEX}
+    few: dict[str, Any] = {name: np.ascontiguousarray(getattr(tongue, name)[used]) for name in PER_VERTEX}
     return tongue._replace(**few), readings._replace(vertex=vertex, roll=roll)
 
 
