@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from agentface.conventions import Doubles, Floats
+from agentface.conventions import Doubles, Floats, Indices
 from agentface.errors import InvalidValueError
 from agentface.head.model import HeadModel
 from agentface.mesh.smoothstep import smoothstep
@@ -17,7 +17,7 @@ from agentface.mpeg4.gaze import GivenAngles
 from agentface.mpeg4.looking import Looking
 from agentface.mpeg4.meter import FapMeter
 from agentface.mpeg4.solver import Wish
-from agentface.parameters import COUNT, FacePose
+from agentface.parameters import COUNT, PARAMETERS, FacePose
 
 Mask = npt.NDArray[np.bool_]
 _SOFT = 0.05
@@ -33,6 +33,8 @@ _SERVES = 0.5
 _ENOUGH, _FELT, _ALIKE = 0.2, 0.02, 0.8
 """Of the best parameter's effect on a FAP that is asked for more than ``_FELT`` of its range: where those that serve it
 do less than ``_ENOUGH`` of it, the best may move, too, and all that do more than ``_ALIKE`` of it."""
+_MIDDLE = 0.002
+"""m from the median plane: what serves a point that near to it does so on both sides."""
 _TOLD = 0.05
 """Of a FAP's range: what is missed by more is told."""
 
@@ -88,6 +90,8 @@ class FapSolver:
         self._tikhonov = _ZERO * np.eye(free)
         effect = np.abs(self.fit.problem.jacobian[:count])
         self._serves = effect > _SERVES * np.maximum(effect.max(axis=0, initial=0.0), 1e-9)
+        middle = [abs(self.meter.points[known.points[0]].position[0]) < _MIDDLE for known in self.meter.faps]
+        self._serves[middle] |= self._serves[middle][:, _partners(self.fit.problem.free)]
         ends = [self.fit.problem.jacobian[:count] * end for end in (self.fit.problem.low, self.fit.problem.high)]
         self._does = np.maximum(*ends), -np.minimum(*ends)
         self._shut_rows = [np.isin(self.meter.columns, np.array(pair) - 1) for pair in LIDS]
@@ -206,6 +210,12 @@ class FapSolver:
         moves |= self._given.moved(named)
         numbers = np.flatnonzero(beyond & named & (np.abs(asked) > 0.0)) + 1
         return FapSolution(FacePose(values), moves, shown, missed, tuple(numbers.tolist()), looks, features)
+
+
+def _partners(free: Indices) -> Indices:
+    """``(F,)``: where among the free parameters the same one of the other side stands; the middle is its own."""
+    places = {PARAMETERS[index].name: place for place, index in enumerate(free)}
+    return np.array([places[PARAMETERS[index].partner or PARAMETERS[index].name] for index in free], np.int32)
 
 
 def _checked(faps: npt.ArrayLike, mask: npt.ArrayLike | None) -> tuple[Doubles, Mask]:

@@ -21,7 +21,7 @@ PLUMPER = 0.4
 _SLIDES = "jaw_thrust", "jaw_shift"
 _FARTHER = 1.4  # times the artists' way forward: as far as MPEG-4 has it, a mouth's width
 _FORWARD = 0.027  # m, of a tongue without that shape
-_ROUND_FROM, _ROUND = 0.72, 0.5  # where along the tongue its tip begins to be round, and how round it is
+_ROUND_FROM, _ROUND = 0.65, 0.68  # where along the tongue its tip begins to be round, and how round it is
 
 
 class TongueTables(NamedTuple):

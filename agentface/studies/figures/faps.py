@@ -22,7 +22,7 @@ GROUPS = {
     2: "jaw-and-inner-lips", 3: "eyes", 4: "eyebrows", 5: "cheeks", 6: "tongue", 7: "head", 8: "outer-lips", 9: "nose",
     10: "ears",
 }  # fmt: skip
-_SIZE = 200, 180
+_SIZE = 150, 135
 _AWAY = 0.6  # m, of the camera
 _ANGLES = {**dict.fromkeys(EYES, 30_000.0), **dict.fromkeys(HEAD, 40_000.0)}
 """AU, to which eyes and head turn."""
