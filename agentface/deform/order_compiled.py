@@ -18,6 +18,7 @@ from agentface.deform.eyes import eyelids_compiled as eyelids  # noqa: F401
 from agentface.deform.finish.order import FinishStage
 from agentface.deform.finish.order_compiled import finish
 from agentface.deform.geometry import FaceArrays
+from agentface.deform.geometry_compiled import face_at
 from agentface.deform.mouth import contact_compiled as contact  # noqa: F401
 from agentface.deform.mouth import jaw_compiled as jaw  # noqa: F401
 from agentface.deform.mouth import lips_compiled as lips
@@ -91,19 +92,7 @@ def frames(tables: FaceTables, scratch: Scratch, first: int, last: int, poses: F
     for index in range(first, last):
         values = poses[index]
         shape(tables, scratch, _LAST, values)
-        face = FaceArrays(
-            faces.vertices[index],
-            faces.normals[index],
-            faces.wrinkles[index],
-            faces.eye_rotations[index],
-            faces.jaw[index],
-            faces.head[index],
-            faces.smooth_normals[index],
-            faces.wrinkle_levels[index],
-            faces.tongue[index],
-            faces.pupils[index],
-            faces.eye_thrust[index],
-        )
+        face = face_at(faces, index)
         moved, shown = scratch.points.ravel(), face.vertices.ravel()
         for place in range(shown.shape[0]):
             shown[place] = moved[place]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from agentface.conventions import Doubles
 from agentface.deform.geometry import FaceArrays
+from agentface.deform.geometry_compiled import face_at
 from agentface.kernel import kernel
 from agentface.mpeg4.readings import Readings
 from agentface.mpeg4.readings_compiled import read
@@ -13,17 +14,4 @@ from agentface.mpeg4.readings_compiled import read
 def read_faces(readings: Readings, faces: FaceArrays, out: Doubles) -> None:
     """Write the numbers of ``B`` faces into ``out (B, N)``."""
     for index in range(out.shape[0]):
-        face = FaceArrays(
-            faces.vertices[index],
-            faces.normals[index],
-            faces.wrinkles[index],
-            faces.eye_rotations[index],
-            faces.jaw[index],
-            faces.head[index],
-            faces.smooth_normals[index],
-            faces.wrinkle_levels[index],
-            faces.tongue[index],
-            faces.pupils[index],
-            faces.eye_thrust[index],
-        )
-        read(readings, face, out[index])
+        read(readings, face_at(faces, index), out[index])
