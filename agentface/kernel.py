@@ -23,6 +23,7 @@ _PACKAGE = Path(__file__).parent
 _READS: dict[str, tuple[str, ...]] = {
     "mesh": (),
     "emotion": (),
+    "speech": (),
     "deform": ("mesh",),
     "tissue": ("mesh", "deform"),
     "mpeg4": ("mesh", "deform", "emotion"),

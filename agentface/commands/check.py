@@ -115,7 +115,7 @@ def _rule_readers() -> dict[str, _Loader]:
     from agentface.facs.action_units import load_action_units
     from agentface.motion.conflicts import load_conflicts
     from agentface.mpeg4.fap_table import load_faps
-    from agentface.mpeg4.visemes import load_visemes
+    from agentface.speech.visemes import load_visemes
 
     return {
         "emotions.yaml": load_emotions,

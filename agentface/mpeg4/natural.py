@@ -7,8 +7,8 @@ import numpy as np
 from agentface.conventions import SIDES, Floats
 from agentface.emotion.inference import default_inference
 from agentface.emotion.state import EMOTIONS
-from agentface.mpeg4.visemes import VISEME_COUNT, visemes
 from agentface.parameters import COUNT, HIGH, LOW, PARAMETERS, indices_of
+from agentface.speech.visemes import VISEME_COUNT, visemes
 
 _BLINKS = 0.3
 """The share of poses whose lids are closing."""
