@@ -26,7 +26,7 @@ _READS: dict[str, tuple[str, ...]] = {
     "speech": (),
     "deform": ("mesh",),
     "tissue": ("mesh", "deform"),
-    "mpeg4": ("mesh", "deform", "emotion"),
+    "mpeg4": ("mesh", "deform", "emotion", "speech"),
 }
 """The rooms that have kernels, and the others that each of them reads: an edit elsewhere leaves its kernels good."""
 _ABOVE = {"__init__.py", "__main__.py", "cli.py", "face.py"}

@@ -14,8 +14,9 @@ from pydantic import Field
 from agentface.config import Document, Table
 from agentface.conventions import Floats
 from agentface.errors import did_you_mean
-from agentface.parameters import COUNT, PARAMETERS, indices_of, parameter_names
+from agentface.parameters import COUNT, PARAMETERS, PLAIN_NAMES, indices_of, parameter_names
 from agentface.resources import rules_file
+from agentface.speech.articulators import CoarticulationRow, Dominance
 
 VISEME_COUNT = 15
 _Number = Annotated[int, Field(ge=0, lt=VISEME_COUNT)]
@@ -29,13 +30,17 @@ class VisemeRow(Table):
     sounds: list[str]
     examples: list[str]
     parameters: dict[str, Annotated[float, Field(ge=-1, le=1)]]
+    dominance: dict[str, Dominance]
+    early_s: Annotated[float, Field(ge=-0.2, le=0.2)] = 0.0
+    jaw_most: Annotated[float, Field(gt=0, le=1)] = 1.0
 
 
 class VisemesFile(Table):
-    """``visemes.yaml``: rows by the number that FAP 1 selects, and others."""
+    """``visemes.yaml``: rows by the number that FAP 1 selects, others, and what is true of all."""
 
     visemes: dict[_Number, VisemeRow]
     more: list[VisemeRow] = Field(default_factory=list)
+    coarticulation: CoarticulationRow
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -48,6 +53,10 @@ class Viseme:
         sounds: phones in SAMPA.
         examples: words that have them.
         values: ``(COUNT,)`` float32, a pose.
+        shares: the same by parameters without side, those that it names.
+        dominance: strength, and speeds before and after in 1/s, by articulator.
+        early_s: so much before the sound's middle it is shown most.
+        jaw_most: 0..1, the jaw opens no farther.
     """
 
     number: int | None
@@ -55,13 +64,17 @@ class Viseme:
     sounds: tuple[str, ...]
     examples: tuple[str, ...]
     values: Floats
+    shares: dict[str, float]
+    dominance: dict[str, tuple[float, float, float]]
+    early_s: float
+    jaw_most: float
 
 
 class VisemeTable(Mapping[str, Viseme]):
-    """Visemes by name, those of MPEG-4 first, in the order of their numbers."""
+    """Visemes by name, those of MPEG-4 first, in the order of their numbers; ``coarticulation``: what holds for all."""
 
-    def __init__(self, visemes: tuple[Viseme, ...]) -> None:
-        self.numbered = visemes[:VISEME_COUNT]
+    def __init__(self, visemes: tuple[Viseme, ...], coarticulation: CoarticulationRow) -> None:
+        self.numbered, self.coarticulation = visemes[:VISEME_COUNT], coarticulation
         self._named = {viseme.name: viseme for viseme in visemes}
 
     def __getitem__(self, name: str) -> Viseme:
@@ -81,19 +94,17 @@ def load_visemes(path: str | Path | None = None) -> VisemeTable:
     missing = [number for number in range(VISEME_COUNT) if number not in file.visemes]
     if missing:
         document.fault(("visemes",), f"all of 0 to {VISEME_COUNT - 1}", f"none of {', '.join(map(str, missing))}")
+    file.coarticulation.check(document, PLAIN_NAMES)
     taken: set[str] = set()
     for where, row in _rows(file):
         if row.name in taken:
             document.fault((*where, "name"), "each name once", row.name)
         taken.add(row.name)
         _check_parameters(document, (*where, "parameters"), row.parameters)
+        file.coarticulation.check_viseme(document, where, row.parameters, row.dominance)
     document.check()
-    return VisemeTable(
-        tuple(
-            Viseme(key if kind == "visemes" else None, row.name, tuple(row.sounds), tuple(row.examples), _values(row))
-            for (kind, key), row in _rows(file)
-        )
-    )
+    visemes = tuple(_viseme(where, row) for where, row in _rows(file))
+    return VisemeTable(visemes, file.coarticulation)
 
 
 @cache
@@ -110,6 +121,21 @@ def visemes() -> tuple[Viseme, ...]:
 def _rows(file: VisemesFile) -> list[tuple[tuple[str, int], VisemeRow]]:
     numbered = [(("visemes", number), row) for number, row in sorted(file.visemes.items())]
     return numbered + [(("more", place), row) for place, row in enumerate(file.more)]
+
+
+def _viseme(where: tuple[str, int], row: VisemeRow) -> Viseme:
+    kind, number = where
+    return Viseme(
+        number if kind == "visemes" else None,
+        row.name,
+        tuple(row.sounds),
+        tuple(row.examples),
+        _values(row),
+        dict(row.parameters),
+        {name: (speeds[0], speeds[1], speeds[-1]) for name, speeds in row.dominance.items()},
+        row.early_s,
+        row.jaw_most,
+    )
 
 
 def _check_parameters(document: Document, where: tuple[str | int, ...], values: Mapping[str, float]) -> None:
