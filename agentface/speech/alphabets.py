@@ -12,6 +12,7 @@ from typing import Annotated
 
 from pydantic import Field
 
+from agentface.cache import prepared, stamp_of
 from agentface.config import Document, Table
 from agentface.errors import UnknownNameError, did_you_mean
 from agentface.resources import rules_file
@@ -135,7 +136,8 @@ def load_phones(path: str | Path | None = None, visemes: VisemeTable | None = No
 @cache
 def phone_table() -> PhoneTable:
     """The table that comes with agentface, read once."""
-    return load_phones()
+    files = [rules_file("phones.yaml"), rules_file("visemes.yaml")]
+    return prepared(stamp_of(files), "phones", load_phones)
 
 
 def _mixtures(row: PhoneRow) -> list[tuple[tuple[str | int, ...], dict[str, float]]]:

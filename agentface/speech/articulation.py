@@ -7,7 +7,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from agentface.cache import prepared, stamp_of
 from agentface.conventions import Doubles, Indices
+from agentface.resources import rules_file
 from agentface.speech.alphabets import Part
 from agentface.speech.articulators import JAW
 from agentface.speech.visemes import VisemeTable, viseme_table
@@ -40,7 +42,7 @@ class Timeline(NamedTuple):
         targets: ``(S, P)``, what each parameter would be if nothing stood beside it.
         dominance: ``(S, A, 3)``: strength, and speed before and after, 1/s.
         held: ``(S, C, 2)``, from when to when a contact is whole.
-        tight: ``(S,)`` 0..1, how much of its way the jaw is kept from.
+        tight: ``(S,)`` 0..1, how the jaw is held: at ``1 / (1 + x)`` it opens no farther than x.
         kept: ``(S, 2)``, from when to when.
         said: ``(S,)`` 0 or 1, whether it is anything but silence.
     """
@@ -91,7 +93,7 @@ class Articulation:
 
     @property
     def size(self) -> int:
-        """How many numbers a sample has: P parameters, how much the jaw is kept from, and how much is spoken."""
+        """How many numbers a sample has: P parameters, how the jaw is held, and how much is spoken."""
         return len(self.names) + 2
 
     def target(self, part: Part) -> Doubles:
@@ -110,11 +112,12 @@ class Articulation:
         return self._table[part.visemes[0][0]].early_s
 
     def tight(self, part: Part) -> float:
-        """0..1, how much of its way the jaw is kept from."""
-        return 1.0 - self._table[part.visemes[0][0]].jaw_most
+        """How the jaw is held, 0 for not at all: at ``1 / (1 + x)`` it opens no farther than x."""
+        most = self._table[part.visemes[0][0]].jaw_most
+        return 0.0 if most >= 1.0 else 1.0 / (1.0 + most)
 
 
 @cache
 def default_articulation() -> Articulation:
     """That of the visemes that come with agentface, made once."""
-    return Articulation(viseme_table())
+    return prepared(stamp_of([rules_file("visemes.yaml")]), "articulation", lambda: Articulation(viseme_table()))

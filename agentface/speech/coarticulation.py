@@ -20,7 +20,7 @@ REACH_S = 2.0
 
 
 def sample(timeline: Timeline, ramps: Ramps, time: float, out: Doubles) -> None:
-    """Write ``out (P + 2,)``: the parameters, 0..1 of its way that the jaw is kept from, and 0..1 speaking."""
+    """Write ``out (P + 2,)``: the parameters, how the jaw is held, and 0..1 speaking."""
     near = (timeline.spans[:, 1] > time - REACH_S) & (timeline.spans[:, 0] < time + REACH_S)
     count, moved = out.shape[0] - 2, ramps.articulator.shape[0]
     out[:] = 0.0
