@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn, Self
@@ -28,6 +28,7 @@ from agentface.requests import (
     GAZE_FADE_S,
     HEAD_FADE_S,
     Blink,
+    Hush,
     LookAt,
     Neutral,
     Play,
@@ -41,8 +42,11 @@ from agentface.requests import (
     SetHead,
     SetMuscle,
     SetParameter,
+    ShowViseme,
+    Speak,
 )
 from agentface.resources import DEFAULT_FACE
+from agentface.speech.phones import Phone
 
 if TYPE_CHECKING:
     from agentface.view.renderer import Renderer
@@ -95,7 +99,7 @@ class Face:
         """Called with every request after it was applied: who steps a face again later notes them here."""
         self._clock = clock or SystemClock()
         self._inference = default_inference(compiled=compiled)
-        self.channels = Mixer(self._inference, self.model.gains)
+        self.channels = Mixer(self._inference, self.model.gains, compiled=compiled)
         self._deformer = make_deformer(deformer, self.model, compiled=compiled)
         self._renderer: Renderer | None = None
         self._look = look
@@ -209,6 +213,32 @@ class Face:
         """
         self.apply(Play(performance, fade))
 
+    def speak(
+        self,
+        visemes: Iterable[Phone | Sequence[Any]],
+        *,
+        start: float = 0.0,
+        rate: float = 1.0,
+        loudness: float = 1.0,
+        interrupt: bool = False,
+        live: bool = False,
+        alphabet: str | None = None,
+    ) -> None:
+        """Move the mouth as for these sounds: name, start and end in seconds, names in any alphabet of ``phones.yaml``.
+
+        Times count from ``start`` seconds after now, or after what is said already; ``interrupt`` says these instead.
+        ``live``: more will come; times count from now, and the newest say wins from its first sound on.
+        """
+        self.apply(Speak.of(visemes, start, rate, loudness, interrupt, live, alphabet))
+
+    def hush(self) -> None:
+        """Say no more, now."""
+        self.apply(Hush())
+
+    def show_viseme(self, name: str, weight: float, duration: float | None = None) -> None:
+        """Show a viseme at 0..1 beside others, for ``duration`` seconds, or until it is set to 0 or :meth:`hush`."""
+        self.apply(ShowViseme(name, weight, duration))
+
     def blink(self) -> None:
         """Blink once."""
         self.apply(Blink())
@@ -233,6 +263,7 @@ class Face:
         Takes seconds the first time on a machine, half a second later on. Changes nothing that is shown.
         """
         self._inference.contractions({EMOTIONS[0]: 1.0})
+        self.channels.speech.warm_up()
         self._deformer.at(FacePose.of(**dict.fromkeys(MUSCLES, 1.0)))
 
     @property
@@ -340,9 +371,9 @@ class Face:
 
         ``face``; ``emotion``, the six target intensities; ``shown``, the ``emotion``, the ``contractions`` and the
         ``shares`` of signed movements as drawn now; ``action_units``, the targets of those that are set; ``drivers``,
-        the parameters that each channel moves; ``speech``, null while the face does not speak; ``gaze_deg``, yaw and
-        pitch; ``frame_ms``, what the last step took; ``messages`` understood; ``errors``, the count of malformed,
-        unknown and rejected ones.
+        the parameters that each channel moves; ``speech``, null while the face does not speak, else the ``phone``, null
+        in a pause, ``ends_in_s`` and how many utterances are ``waiting``; ``gaze_deg``, yaw and pitch; ``frame_ms``,
+        what the last step took; ``messages`` understood; ``errors``, the count of malformed, unknown and rejected ones.
         """
         emotion, pose = self.channels.emotion, self.pose
         shown = zip(emotion.target, emotion.intensities.value.tolist(), strict=True)
@@ -356,7 +387,7 @@ class Face:
             },
             "action_units": self.channels.action_units.shown,
             "drivers": self.channels.drivers(),
-            "speech": None,
+            "speech": self.channels.speech.status,
             "gaze_deg": [round(math.degrees(pose[name]), 3) for name in ("gaze_yaw", "gaze_pitch")],
             "frame_ms": round(self._frame_ms, 3),
             "messages": self.message_counts.messages,

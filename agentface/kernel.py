@@ -23,9 +23,10 @@ _PACKAGE = Path(__file__).parent
 _READS: dict[str, tuple[str, ...]] = {
     "mesh": (),
     "emotion": (),
+    "speech": (),
     "deform": ("mesh",),
     "tissue": ("mesh", "deform"),
-    "mpeg4": ("mesh", "deform", "emotion"),
+    "mpeg4": ("mesh", "deform", "emotion", "speech"),
 }
 """The rooms that have kernels, and the others that each of them reads: an edit elsewhere leaves its kernels good."""
 _ABOVE = {"__init__.py", "__main__.py", "cli.py", "face.py"}

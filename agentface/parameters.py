@@ -20,9 +20,9 @@ from agentface.conventions import SIDES, Floats, check_range
 from agentface.errors import InvalidValueError, UnknownNameError
 from agentface.named_array import NamedArray
 
-Kind = Literal["vector", "pseudo", "morph", "jaw", "tongue", "eye", "gaze", "head"]
+Kind = Literal["vector", "pseudo", "morph", "jaw", "tongue", "eye", "gaze", "head", "contact"]
 """What moves: a vector muscle, a muscle of another form, skin by a shape (``morphs.yaml``), jaw, tongue, an eyeball or
-its pupil, the gaze, the head."""
+its pupil, the gaze, the head, lips until they touch something (:mod:`agentface.deform.mouth.contact`)."""
 Unit = Literal["contraction", "opening", "share", "rad"]
 """Contractions and openings are 0..1, at 0 where the face is at rest. A share is that of a whole movement, -1 of the
 opposite one. Angles have a sign, too."""
@@ -69,6 +69,10 @@ def _share(
 
 def _tongue(description: str, *, low: float = -1.0, sideways: bool = False) -> _Row:
     return _Row("tongue", "tongue", description, False, "share", low, way="add", sideways=sideways)
+
+
+def _contact(description: str) -> _Row:
+    return _Row("contact", "mouth", description, False, "share")
 
 
 def _angle(
@@ -143,6 +147,8 @@ _TABLE: dict[str, _Row] = {
     "tongue_roll": _tongue("the edges of the tongue roll up", low=0.0),
     "pupil_dilation": _share("eyes", "the pupil grows to twice its diameter, or shrinks to half of it", kind="eye"),
     "eye_thrust": _share("eyes", "the eyeball comes out of its socket, or sinks into it", kind="eye"),
+    "lip_seal": _contact("draws the lips together, whatever parts them: p, b, m"),
+    "lip_bite": _contact("brings the edge of the lower lip to the upper incisors: f, v"),
 }
 
 

@@ -21,7 +21,7 @@ LAYERS = (
     ("parameters", "clock", "kernel"),
     ("mesh",),
     ("head",),
-    ("emotion", "deform", "facs"),
+    ("emotion", "deform", "facs", "speech"),
     ("tissue", "mpeg4"),
     ("motion",),
     ("arkit",),

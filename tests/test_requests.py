@@ -17,6 +17,7 @@ from agentface.motion.performance import Performance
 from agentface.parameters import COUNT, MUSCLES, NAMES, PARAMETERS, parameter
 from agentface.requests import (
     Blink,
+    Hush,
     LookAt,
     Neutral,
     Play,
@@ -30,7 +31,10 @@ from agentface.requests import (
     SetHead,
     SetMuscle,
     SetParameter,
+    ShowViseme,
+    Speak,
 )
+from agentface.speech.phones import Phone
 from tests.heads import head_model
 
 FRACTIONS = st.floats(0, 1)
@@ -51,6 +55,9 @@ ANY_REQUEST = st.one_of(
     st.builds(LookAt, st.floats(-0.2, 0.2), st.floats(-0.2, 0.2), st.floats(0.5, 2), FADES),
     st.builds(SetHead, st.floats(-80, 80), st.floats(-60, 60), st.floats(-50, 50), FADES),
     st.builds(Blink),
+    st.builds(Speak, st.sampled_from([(), (Phone("p", 0, 0.1), Phone("aa", 0.1, 0.3))]), FADES, live=st.booleans()),
+    st.builds(Hush),
+    st.builds(ShowViseme, st.sampled_from(("aa", "viseme_PP", "iy")), FRACTIONS, st.none() | FADES),
     st.builds(Play, st.none() | st.sampled_from([PERFORMED]), FADES),
 )
 
@@ -75,7 +82,7 @@ def test_every_kind_is_tried_here():
     made = {name for name, kind in vars(requests).items() if isinstance(kind, type) and issubclass(kind, Request)}
     assert made - {"Request"} == {
         "SetEmotion", "SetEmotions", "Neutral", "SetMuscle", "SetParameter", "SetActionUnit", "SetGaze", "LookAt",
-        "SetHead", "Blink", "Play", "SetFap", "SetFaps", "SetArkit",
+        "SetHead", "Blink", "Play", "SetFap", "SetFaps", "SetArkit", "Speak", "Hush", "ShowViseme",
     }  # fmt: skip
 
 
@@ -117,6 +124,9 @@ def test_the_methods_of_a_face_make_requests(face):
     face.look_at(np.array([0.1, 0.0, 0.6]))
     face.set_head(10, 20)
     face.blink()
+    face.speak([("p", 0, 0.1), ("AA1", 0.1, 0.3)], rate=1.2, interrupt=True)
+    face.show_viseme("aa", 0.5, 1)
+    face.hush()
     face.play(None, fade=0.1)
     assert noted == [
         SetEmotion("happiness", 0.5, 0.1, 1.0),
@@ -132,6 +142,9 @@ def test_the_methods_of_a_face_make_requests(face):
         LookAt(0.1, 0.0, 0.6),
         SetHead(10.0, 20.0, 0.0),
         Blink(),
+        Speak((Phone("p", 0.0, 0.1), Phone("AA1", 0.1, 0.3)), rate=1.2, interrupt=True),
+        ShowViseme("aa", 0.5, 1.0),
+        Hush(),
         Play(None, 0.1),
     ]
 
@@ -163,6 +176,16 @@ def test_the_methods_of_a_face_make_requests(face):
         (lambda: LookAt(0, 0, math.nan), "finite"),
         (lambda: LookAt.of((1, 2)), "x, y and z"),
         (lambda: LookAt.of(3), "x, y and z"),
+        (lambda: Speak.of("aa"), "triples"),
+        (lambda: Speak.of([("aa", 0, 1), ("xyzzy", 1, 2)]), "xyzzy"),
+        (lambda: Speak.of([("aa", 0, 1), ("s", 0.5, 2)]), "before the last"),
+        (lambda: Speak.of([("aa", 0, 1)], rate=0), "rate"),
+        (lambda: Speak.of([("aa", 0, 1)], loudness=math.nan), "loudness"),
+        (lambda: Speak.of([("aa", 0, 1)], interrupt=1), "true or false"),
+        (lambda: Speak.of([("aa", 0, 1)], alphabet="sampa"), "arpabet"),
+        (lambda: ShowViseme("xyzzy", 1.0), "viseme"),
+        (lambda: ShowViseme("aa", 1.5), "0..1"),
+        (lambda: ShowViseme("aa", 0.5, -1), "seconds"),
         (lambda: Play("nod.fap"), "a Performance"),
         (lambda: Play(None, -1), "seconds"),
     ],

@@ -115,7 +115,8 @@ def _rule_readers() -> dict[str, _Loader]:
     from agentface.facs.action_units import load_action_units
     from agentface.motion.conflicts import load_conflicts
     from agentface.mpeg4.fap_table import load_faps
-    from agentface.mpeg4.visemes import load_visemes
+    from agentface.speech.alphabets import load_phones
+    from agentface.speech.visemes import load_visemes
 
     return {
         "emotions.yaml": load_emotions,
@@ -123,6 +124,7 @@ def _rule_readers() -> dict[str, _Loader]:
         "action_units.yaml": load_action_units,
         "conflicts.yaml": load_conflicts,
         "faps.yaml": load_faps,
+        "phones.yaml": load_phones,
         "visemes.yaml": load_visemes,
         "vocabularies.yaml": load_vocabularies,
     }

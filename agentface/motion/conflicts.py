@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 from typing import Annotated
@@ -13,10 +14,10 @@ from agentface.cache import prepared, stamp_of
 from agentface.config import Document, Table
 from agentface.errors import UnknownNameError, did_you_mean
 from agentface.motion.channel import Rank, parameters_meant
-from agentface.parameters import Way
+from agentface.parameters import GROUPS, Way, parameter
 from agentface.resources import rules_file
 
-CHANNELS = ("emotion", "gaze", "head", "action_units", "performance", "faps", "arkit", "blink", "muscles")
+CHANNELS = ("emotion", "gaze", "head", "action_units", "performance", "faps", "arkit", "speech", "blink", "muscles")
 """The face's own channels; a program adds others."""
 
 
@@ -29,6 +30,7 @@ def _target(key: str) -> str:
 
 
 Target = Annotated[str, AfterValidator(_target)]
+_Share = Annotated[float, Field(ge=0, le=1)]
 Priority = Annotated[int, Field(ge=0, le=100)]
 
 
@@ -45,18 +47,44 @@ class Row(Table):
         return Rank(self.priority, self.way, dict(self.priorities), dict(self.ways))
 
 
+class YieldRow(Table):
+    """How much of what a muscle does gives way to speech."""
+
+    speaking: _Share = 0.0
+    rounding: _Share = 0.0
+    closure: _Share = 0.0
+
+
 class ConflictsFile(Table):
     """The whole file."""
 
     channels: dict[str, Row]
     others: Row
+    speech_yields: dict[Target, YieldRow]
+    speech_rounds: list[Target]
+    speech_closes: list[Target]
+
+
+@dataclass(frozen=True, slots=True)
+class SpeechYields:
+    """How what the face feels gives way to what it says.
+
+    Attributes:
+        shares: 0..1 to speaking, to rounding and to closure, by parameter without side.
+        rounds: the parameters without side that make the lips round.
+        closes: those that bring them together.
+    """
+
+    shares: Mapping[str, tuple[float, float, float]]
+    rounds: tuple[str, ...]
+    closes: tuple[str, ...]
 
 
 class Conflicts:
-    """The ranks of the face's own channels by name, and that of every other."""
+    """The ranks of the face's own channels by name, that of every other, and what gives way to speech."""
 
-    def __init__(self, ranks: Mapping[str, Rank], others: Rank) -> None:
-        self._ranks, self._others = dict(ranks), others
+    def __init__(self, ranks: Mapping[str, Rank], others: Rank, yields: SpeechYields) -> None:
+        self._ranks, self._others, self.yields = dict(ranks), others, yields
 
     def rank(self, name: str) -> Rank:
         """The rank of the channel called ``name``."""
@@ -77,7 +105,27 @@ def load_conflicts(path: str | Path) -> Conflicts:
                 document.fault(("channels", name), "this key", "nothing")
     document.check()
     assert file is not None, "a document without faults is parsed"  # noqa: S101 - for the type checker
-    return Conflicts({name: row.rank() for name, row in file.channels.items()}, file.others.rank())
+    return Conflicts({name: row.rank() for name, row in file.channels.items()}, file.others.rank(), _yields(file))
+
+
+def _yields(file: ConflictsFile) -> SpeechYields:
+    """Groups first, so that a muscle's own row counts."""
+    groups = [key for key in file.speech_yields if key in GROUPS]
+    shares: dict[str, tuple[float, float, float]] = {}
+    for key in (*groups, *(key for key in file.speech_yields if key not in GROUPS)):
+        row = file.speech_yields[key]
+        shares |= dict.fromkeys(_plain(key), (row.speaking, row.rounding, row.closure))
+    rounds, closes = (
+        tuple(dict.fromkeys(name for key in keys for name in _plain(key)))
+        for keys in (file.speech_rounds, file.speech_closes)
+    )
+    return SpeechYields(shares, rounds, closes)
+
+
+def _plain(key: str) -> list[str]:
+    """The parameters that a target means, without their sides."""
+    known = map(parameter, parameters_meant(key))
+    return list(dict.fromkeys(each.name[:-2] if each.partner else each.name for each in known))
 
 
 @cache

@@ -19,6 +19,7 @@ from agentface.motion.emotion import EmotionChannel, EmotionRules
 from agentface.motion.faps import FapChannel
 from agentface.motion.muscles import MuscleChannel
 from agentface.motion.playing import PerformanceChannel
+from agentface.motion.speech import SpeechChannel
 from agentface.motion.turns import TurnChannel
 from agentface.parameters import COUNT, HIGH, LOW, NEUTRAL, WAYS, FacePose, Way, parameter
 
@@ -80,8 +81,8 @@ def _compact(places: list[int]) -> slice | npt.NDArray[np.intp]:
 class Mixer(MutableMapping[str, Channel]):
     """Channels by name; each is blended over those of lower priority, by the ways and priorities of its rank.
 
-    The face's own are ``emotion``, ``gaze``, ``head``, ``action_units``, ``performance``, ``faps``, ``blink`` and
-    ``muscles``,
+    The face's own are ``emotion``, ``gaze``, ``head``, ``action_units``, ``performance``, ``faps``, ``speech``,
+    ``blink`` and ``muscles``,
     also to be had as attributes; they stay. A program adds others, ``mixer["breath"] = channel`` or :meth:`add`, and
     deletes them again; a face shows it from its next step on.
 
@@ -89,9 +90,17 @@ class Mixer(MutableMapping[str, Channel]):
         rules: what makes contractions of emotions.
         gains: ``(COUNT,)``, what each side of the face makes of what an emotion wants of both; 1 when None.
         conflicts: the channels' ranks; those of ``rules/conflicts.yaml`` when None.
+        compiled: False for numpy instead of compiled kernels.
     """
 
-    def __init__(self, rules: EmotionRules, gains: Floats | None = None, conflicts: Conflicts | None = None) -> None:
+    def __init__(
+        self,
+        rules: EmotionRules,
+        gains: Floats | None = None,
+        conflicts: Conflicts | None = None,
+        *,
+        compiled: bool = True,
+    ) -> None:
         self._conflicts = conflicts or default_conflicts()
         self._layers: dict[str, _Layer] = {}
         self._steps: tuple[_Step, ...] = ()
@@ -104,6 +113,7 @@ class Mixer(MutableMapping[str, Channel]):
         self.action_units = self._own("action_units", ActionUnitChannel())
         self.performance = self._own("performance", PerformanceChannel())
         self.faps = self._own("faps", FapChannel())
+        self.speech = self._own("speech", SpeechChannel(compiled=compiled, yields=self._conflicts.yields))
         self.blink = self._own("blink", BlinkChannel())
         self.muscles = self._own("muscles", MuscleChannel())
         self._fixed = frozenset(self._layers)

@@ -24,8 +24,8 @@ LIDS = ((19, 21), (20, 22))
 CLOSED = 1024.0
 """Units."""
 GAZE = indices_of("gaze_yaw") + indices_of("gaze_pitch") + indices_of("gaze_vergence")
-_GIVEN = {"gaze", "head"}
-"""Kinds of parameters that FAPs give by themselves: nothing is solved for them."""
+_GIVEN = {"gaze", "head", "contact"}
+"""Kinds of parameters that FAPs give by themselves, or never: nothing is solved for them."""
 _COUPLED = ("orbicularis_oculi_palpebralis", "orbicularis_oculi_orbitalis")
 """Muscles that do something else on one side than on both: closing one eye squeezes it."""
 _NO_RANGE = 10.0

@@ -14,8 +14,9 @@ from agentface.errors import InvalidValueError
 from agentface.mpeg4.expressions import EXPRESSIONS, expression_pose
 from agentface.mpeg4.fap_solver import FapSolution, FapSolver
 from agentface.mpeg4.faps import FAP_COUNT
-from agentface.mpeg4.visemes import BLEND_STEPS, VISEME_COUNT, check_step, viseme_pose
+from agentface.mpeg4.visemes import BLEND_STEPS, check_step, viseme_pose
 from agentface.parameters import COUNT, FacePose
+from agentface.speech.visemes import VISEME_COUNT
 
 Mask = npt.NDArray[np.bool_]
 

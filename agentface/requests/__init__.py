@@ -15,6 +15,7 @@ from agentface.requests.muscle import SetMuscle, SetParameter
 from agentface.requests.neutral import Neutral
 from agentface.requests.performance import Play
 from agentface.requests.request import FADE_S, Movable, Request
+from agentface.requests.speech import Hush, ShowViseme, Speak
 from agentface.requests.turn import GAZE_FADE_S, HEAD_FADE_S, LookAt, SetGaze, SetHead
 
 __all__ = [
@@ -22,6 +23,7 @@ __all__ = [
     "GAZE_FADE_S",
     "HEAD_FADE_S",
     "Blink",
+    "Hush",
     "LookAt",
     "Movable",
     "Neutral",
@@ -37,4 +39,6 @@ __all__ = [
     "SetHead",
     "SetMuscle",
     "SetParameter",
+    "ShowViseme",
+    "Speak",
 ]

@@ -10,9 +10,10 @@ from agentface.errors import InvalidValueError
 from agentface.mpeg4.expressions import EXPRESSIONS, expression_pose
 from agentface.mpeg4.fap_player import FapPlayer
 from agentface.mpeg4.faps import fap
-from agentface.mpeg4.visemes import VISEME_COUNT, viseme_pose, visemes
+from agentface.mpeg4.visemes import viseme_pose
 from agentface.parameters import FacePose, parameter
 from agentface.resources import face_names, rules_file
+from agentface.speech.visemes import VISEME_COUNT, visemes
 from tests.mpeg4.solvers import measured, solver_of
 
 NOTHING = np.zeros(68)

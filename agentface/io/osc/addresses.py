@@ -13,6 +13,7 @@ from agentface.mpeg4.fap_stream import EXPRESSION, EXPRESSION_FIELDS, VISEME, VI
 from agentface.mpeg4.fap_table import FAP_COUNT
 from agentface.requests import (
     Blink,
+    Hush,
     LookAt,
     Neutral,
     Request,
@@ -26,6 +27,8 @@ from agentface.requests import (
     SetHead,
     SetMuscle,
     SetParameter,
+    ShowViseme,
+    Speak,
 )
 
 PREFIX = "/agentface/"
@@ -186,6 +189,23 @@ def _head(arguments: Sequence[Any]) -> Request:
     return SetHead(*arguments)
 
 
+def _viseme(arguments: Sequence[Any]) -> Request:
+    _count(arguments, "name weight [duration_s]", 2, 3)
+    return ShowViseme(*arguments)
+
+
+def _visemes(arguments: Sequence[Any]) -> Request:
+    form = "triples of name, start and end in seconds from now"
+    if not arguments or len(arguments) % 3:
+        raise InvalidValueError("arguments", form, len(arguments), f"send {form}")
+    rows = [arguments[place : place + 3] for place in range(0, len(arguments), 3)]
+    return Speak.of(rows, live=True)
+
+
+def _hush(arguments: Sequence[Any]) -> Request | None:
+    return Hush() if pressed(arguments) else None
+
+
 def _blink(arguments: Sequence[Any]) -> Request | None:
     return Blink() if pressed(arguments) else None
 
@@ -227,5 +247,8 @@ _READERS: dict[str, Reader] = {
     "gaze": _gaze,
     "look_at": _look_at,
     "head": _head,
+    "viseme": _viseme,
+    "visemes": _visemes,
+    "hush": _hush,
     "blink": _blink,
 }

@@ -1,0 +1,1 @@
+"""From timed phones to what the mouth does: visemes, alphabets, coarticulation."""
