@@ -17,6 +17,7 @@ from agentface.motion.performance import Performance
 from agentface.parameters import COUNT, MUSCLES, NAMES, PARAMETERS, parameter
 from agentface.requests import (
     Blink,
+    Gesture,
     LookAt,
     Neutral,
     Play,
@@ -28,8 +29,10 @@ from agentface.requests import (
     SetFaps,
     SetGaze,
     SetHead,
+    SetLiveliness,
     SetMuscle,
     SetParameter,
+    SetState,
 )
 from tests.heads import head_model
 
@@ -51,6 +54,9 @@ ANY_REQUEST = st.one_of(
     st.builds(LookAt, st.floats(-0.2, 0.2), st.floats(-0.2, 0.2), st.floats(0.5, 2), FADES),
     st.builds(SetHead, st.floats(-80, 80), st.floats(-60, 60), st.floats(-50, 50), FADES),
     st.builds(Blink),
+    st.builds(Gesture, st.sampled_from(("nod", "Brow Flash", "glance")), FRACTIONS),
+    st.builds(SetLiveliness, FRACTIONS, st.none() | FADES),
+    st.builds(SetState, st.sampled_from((None, "listening", "thinking"))),
     st.builds(Play, st.none() | st.sampled_from([PERFORMED]), FADES),
 )
 
@@ -75,7 +81,7 @@ def test_every_kind_is_tried_here():
     made = {name for name, kind in vars(requests).items() if isinstance(kind, type) and issubclass(kind, Request)}
     assert made - {"Request"} == {
         "SetEmotion", "SetEmotions", "Neutral", "SetMuscle", "SetParameter", "SetActionUnit", "SetGaze", "LookAt",
-        "SetHead", "Blink", "Play", "SetFap", "SetFaps", "SetArkit",
+        "SetHead", "Blink", "Play", "SetFap", "SetFaps", "SetArkit", "Gesture", "SetLiveliness", "SetState",
     }  # fmt: skip
 
 
@@ -117,6 +123,9 @@ def test_the_methods_of_a_face_make_requests(face):
     face.look_at(np.array([0.1, 0.0, 0.6]))
     face.set_head(10, 20)
     face.blink()
+    face.gesture("brow-flash", 0.5)
+    face.set_liveliness(0.3)
+    face.set_state("listening")
     face.play(None, fade=0.1)
     assert noted == [
         SetEmotion("happiness", 0.5, 0.1, 1.0),
@@ -132,6 +141,9 @@ def test_the_methods_of_a_face_make_requests(face):
         LookAt(0.1, 0.0, 0.6),
         SetHead(10.0, 20.0, 0.0),
         Blink(),
+        Gesture("brow_flash", 0.5),
+        SetLiveliness(0.3),
+        SetState("listening"),
         Play(None, 0.1),
     ]
 
@@ -163,6 +175,13 @@ def test_the_methods_of_a_face_make_requests(face):
         (lambda: LookAt(0, 0, math.nan), "finite"),
         (lambda: LookAt.of((1, 2)), "x, y and z"),
         (lambda: LookAt.of(3), "x, y and z"),
+        (lambda: Gesture(3), "a name"),
+        (lambda: Gesture("nod", 2), "0..1"),
+        (lambda: SetLiveliness(1.5), "0..1"),
+        (lambda: SetLiveliness("0.6"), "number"),
+        (lambda: SetLiveliness(0.5, -1), "seconds"),
+        (lambda: SetState("busy"), "idle"),
+        (lambda: SetState(3), "idle"),
         (lambda: Play("nod.fap"), "a Performance"),
         (lambda: Play(None, -1), "seconds"),
     ],
@@ -179,6 +198,8 @@ def test_a_request_that_the_face_refuses_changes_nothing_and_is_not_noted(face):
     before = face.pose
     with pytest.raises(InvalidValueError, match="in front of the eyes"):
         face.look_at((0.0, 0.0, -1.0))
+    with pytest.raises(UnknownNameError, match="nod"):
+        face.gesture("nood")
     assert face.pose == before
     assert not noted
 

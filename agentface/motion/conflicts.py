@@ -16,7 +16,10 @@ from agentface.motion.channel import Rank, parameters_meant
 from agentface.parameters import Way
 from agentface.resources import rules_file
 
-CHANNELS = ("emotion", "gaze", "head", "action_units", "performance", "faps", "arkit", "blink", "muscles")
+CHANNELS = (
+    *("emotion", "gaze", "head", "life", "gestures"),
+    *("action_units", "performance", "faps", "arkit", "blink", "muscles"),
+)
 """The face's own channels; a program adds others."""
 
 

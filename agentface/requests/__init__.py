@@ -11,6 +11,8 @@ from agentface.requests.arkit import SetArkit
 from agentface.requests.blink import Blink
 from agentface.requests.emotion import SetEmotion, SetEmotions
 from agentface.requests.fap import SetFap, SetFaps
+from agentface.requests.gesture import Gesture
+from agentface.requests.life import SetLiveliness, SetState
 from agentface.requests.muscle import SetMuscle, SetParameter
 from agentface.requests.neutral import Neutral
 from agentface.requests.performance import Play
@@ -22,6 +24,7 @@ __all__ = [
     "GAZE_FADE_S",
     "HEAD_FADE_S",
     "Blink",
+    "Gesture",
     "LookAt",
     "Movable",
     "Neutral",
@@ -35,6 +38,8 @@ __all__ = [
     "SetFaps",
     "SetGaze",
     "SetHead",
+    "SetLiveliness",
     "SetMuscle",
     "SetParameter",
+    "SetState",
 ]

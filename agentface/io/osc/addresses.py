@@ -13,6 +13,7 @@ from agentface.mpeg4.fap_stream import EXPRESSION, EXPRESSION_FIELDS, VISEME, VI
 from agentface.mpeg4.fap_table import FAP_COUNT
 from agentface.requests import (
     Blink,
+    Gesture,
     LookAt,
     Neutral,
     Request,
@@ -24,8 +25,10 @@ from agentface.requests import (
     SetFaps,
     SetGaze,
     SetHead,
+    SetLiveliness,
     SetMuscle,
     SetParameter,
+    SetState,
 )
 
 PREFIX = "/agentface/"
@@ -186,6 +189,21 @@ def _head(arguments: Sequence[Any]) -> Request:
     return SetHead(*arguments)
 
 
+def _gesture(arguments: Sequence[Any]) -> Request:
+    _count(arguments, "name [strength]", 1, 2)
+    return Gesture(*arguments)
+
+
+def _liveliness(arguments: Sequence[Any]) -> Request:
+    _count(arguments, "liveliness", 1, 1)
+    return SetLiveliness(*arguments)
+
+
+def _state(arguments: Sequence[Any]) -> Request:
+    _count(arguments, "[state]", 0, 1)
+    return SetState(*arguments or (None,))
+
+
 def _blink(arguments: Sequence[Any]) -> Request | None:
     return Blink() if pressed(arguments) else None
 
@@ -228,4 +246,7 @@ _READERS: dict[str, Reader] = {
     "look_at": _look_at,
     "head": _head,
     "blink": _blink,
+    "gesture": _gesture,
+    "liveliness": _liveliness,
+    "state": _state,
 }
