@@ -19,6 +19,7 @@ from agentface.emotion.inference import default_inference
 from agentface.emotion.state import EMOTIONS, NEUTRAL, EmotionState, canonical_or_neutral
 from agentface.errors import InvalidValueError
 from agentface.head.model import HeadModel, load_model
+from agentface.motion.gestures.table import all_gestures
 from agentface.motion.mixer import Mixer
 from agentface.motion.performance import Performance
 from agentface.motion.stream import STREAM_FADE_S
@@ -28,6 +29,7 @@ from agentface.requests import (
     GAZE_FADE_S,
     HEAD_FADE_S,
     Blink,
+    Gesture,
     Hush,
     LookAt,
     Neutral,
@@ -40,8 +42,10 @@ from agentface.requests import (
     SetFaps,
     SetGaze,
     SetHead,
+    SetLiveliness,
     SetMuscle,
     SetParameter,
+    SetState,
     ShowViseme,
     Speak,
 )
@@ -70,6 +74,8 @@ class Face:
         compiled: False for numpy instead of compiled kernels: one picture is there sooner, a frame takes far longer.
         look: the name of a look of this face, or the path of its file; the face's own when None.
         asymmetry: how much of its own asymmetry the face has, 0..1; a model that is loaded has its own.
+        liveliness: how much it lives between messages, 0, perfectly still, .. 1; 0.6 is natural.
+        gestures: a file of gestures beside those of ``rules/gestures.yaml`` and the user's.
         clock: measures ``frame_ms``; the motion itself takes its time from ``step`` alone.
 
     A call changes where the face goes, ``step`` moves it there. Times are seconds; a fade of 0 is done at once.
@@ -91,6 +97,8 @@ class Face:
         compiled: bool = True,
         look: str | Path | None = None,
         asymmetry: float = 1.0,
+        liveliness: float = 0.0,
+        gestures: str | Path | None = None,
     ) -> None:
         self.model = face if isinstance(face, HeadModel) else load_model(face, asymmetry=asymmetry)
         self.random = np.random.default_rng(seed)
@@ -99,7 +107,14 @@ class Face:
         """Called with every request after it was applied: who steps a face again later notes them here."""
         self._clock = clock or SystemClock()
         self._inference = default_inference(compiled=compiled)
-        self.channels = Mixer(self._inference, self.model.gains, compiled=compiled)
+        self.channels = Mixer(
+            self._inference,
+            self.model.gains,
+            compiled=compiled,
+            random=self.random.spawn(1)[0],
+            gestures=all_gestures(gestures),
+        )
+        SetLiveliness(liveliness, 0.0).apply(self)
         self._deformer = make_deformer(deformer, self.model, compiled=compiled)
         self._renderer: Renderer | None = None
         self._look = look
@@ -197,8 +212,8 @@ class Face:
     def look_at(self, point: Sequence[float], *, fade: float = GAZE_FADE_S) -> None:
         """Look at a point, each eye exactly: x, y, z in metres in the model's axes, where the head is not turned.
 
-        A point too far aside is looked at as far as the eyes turn. Raises InvalidValueError for a point that is not
-        in front of the eyes.
+        It is looked at until the gaze is told otherwise, whatever turns the head; the head joins the eyes for what is
+        far aside. Raises InvalidValueError for a point that is not in front of the eyes.
         """
         self.apply(LookAt.of(point, fade))
 
@@ -242,6 +257,24 @@ class Face:
     def blink(self) -> None:
         """Blink once."""
         self.apply(Blink())
+
+    def gesture(self, name: str, strength: float = 1.0) -> None:
+        """Nod, shake, tilt, ...: a gesture of ``rules/gestures.yaml``, at ``strength`` 0..1."""
+        self.apply(Gesture(name, strength))
+
+    def set_liveliness(self, liveliness: float, *, fade: float | None = None) -> None:
+        """Blink, look about, sway and breathe between messages: 0, perfectly still, .. 1; 0.6 is natural.
+
+        In ``fade`` seconds, those of ``rules/life.yaml`` when None.
+        """
+        self.apply(SetLiveliness(liveliness, fade))
+
+    def set_state(self, state: str | None) -> None:
+        """What it lives for: ``idle``, ``listening``, ``thinking`` or ``speaking``.
+
+        None, as at first: ``speaking`` while the face speaks, and ``idle`` otherwise.
+        """
+        self.apply(SetState(state))
 
     def step(self, dt: float) -> FaceGeometry:
         """Let ``dt`` seconds pass, and return the face as it is then.
@@ -371,9 +404,10 @@ class Face:
 
         ``face``; ``emotion``, the six target intensities; ``shown``, the ``emotion``, the ``contractions`` and the
         ``shares`` of signed movements as drawn now; ``action_units``, the targets of those that are set; ``drivers``,
-        the parameters that each channel moves; ``speech``, null while the face does not speak, else the ``phone``, null
-        in a pause, ``ends_in_s`` and how many utterances are ``waiting``; ``gaze_deg``, yaw and pitch; ``frame_ms``,
-        what the last step took; ``messages`` understood; ``errors``, the count of malformed, unknown and rejected ones.
+        the parameters that each channel moves; ``state`` and ``liveliness``; ``speech``, null while the face does not
+        speak, else the ``phone``, null in a pause, ``ends_in_s`` and how many utterances are ``waiting``; ``gaze_deg``,
+        yaw and pitch; ``frame_ms``, what the last step took; ``messages`` understood; ``errors``, the count of
+        malformed, unknown and rejected ones.
         """
         emotion, pose = self.channels.emotion, self.pose
         shown = zip(emotion.target, emotion.intensities.value.tolist(), strict=True)
@@ -387,6 +421,8 @@ class Face:
             },
             "action_units": self.channels.action_units.shown,
             "drivers": self.channels.drivers(),
+            "state": self.channels.life.state,
+            "liveliness": round(self.channels.life.liveliness, 4),
             "speech": self.channels.speech.status,
             "gaze_deg": [round(math.degrees(pose[name]), 3) for name in ("gaze_yaw", "gaze_pitch")],
             "frame_ms": round(self._frame_ms, 3),

@@ -30,9 +30,7 @@ def user_faces_folder() -> Path:
 
     ``regions`` in AGENTFACE_DATA, or else in ``agentface`` in XDG_DATA_HOME, or else in ``~/.local/share/agentface``.
     """
-    if chosen := os.environ.get("AGENTFACE_DATA"):
-        return _expanded(chosen) / "regions"
-    return _expanded(os.environ.get("XDG_DATA_HOME") or "~/.local/share") / "agentface" / "regions"
+    return _user_folder() / "regions"
 
 
 def user_face_names() -> tuple[str, ...]:
@@ -56,6 +54,12 @@ def face_folder(face: str | Path) -> Path:
     raise UnknownNameError("face, or a path to a face's folder", str(face), (*face_names(), *user_face_names()))
 
 
+def _user_folder() -> Path:
+    if chosen := os.environ.get("AGENTFACE_DATA"):
+        return _expanded(chosen)
+    return _expanded(os.environ.get("XDG_DATA_HOME") or "~/.local/share") / "agentface"
+
+
 def _expanded(path: str | Path) -> Path:
     try:
         return Path(path).expanduser()
@@ -66,3 +70,8 @@ def _expanded(path: str | Path) -> Path:
 def rules_file(name: str) -> Path:
     """A file of ``rules/``, for example ``rules_file("emotions.yaml")``."""
     return data_folder("rules") / name
+
+
+def user_rules_file(name: str) -> Path:
+    """What adds to the file of this name in ``rules/``: in ``rules`` of the user's data folder; it need not exist."""
+    return _user_folder() / "rules" / name

@@ -20,7 +20,8 @@ from tests.deform.jelly import Jelly
 from tests.heads import head_model
 
 KEYS = [
-    "face", "emotion", "shown", "action_units", "drivers", "speech", "gaze_deg", "frame_ms", "messages", "errors",
+    "face", "emotion", "shown", "action_units", "drivers", "state", "liveliness",
+    "speech", "gaze_deg", "frame_ms", "messages", "errors",
 ]  # fmt: skip
 
 

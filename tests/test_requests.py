@@ -17,6 +17,7 @@ from agentface.motion.performance import Performance
 from agentface.parameters import COUNT, MUSCLES, NAMES, PARAMETERS, parameter
 from agentface.requests import (
     Blink,
+    Gesture,
     Hush,
     LookAt,
     Neutral,
@@ -29,8 +30,10 @@ from agentface.requests import (
     SetFaps,
     SetGaze,
     SetHead,
+    SetLiveliness,
     SetMuscle,
     SetParameter,
+    SetState,
     ShowViseme,
     Speak,
 )
@@ -58,6 +61,9 @@ ANY_REQUEST = st.one_of(
     st.builds(Speak, st.sampled_from([(), (Phone("p", 0, 0.1), Phone("aa", 0.1, 0.3))]), FADES, live=st.booleans()),
     st.builds(Hush),
     st.builds(ShowViseme, st.sampled_from(("aa", "viseme_PP", "iy")), FRACTIONS, st.none() | FADES),
+    st.builds(Gesture, st.sampled_from(("nod", "Brow Flash", "glance")), FRACTIONS),
+    st.builds(SetLiveliness, FRACTIONS, st.none() | FADES),
+    st.builds(SetState, st.sampled_from((None, "listening", "thinking"))),
     st.builds(Play, st.none() | st.sampled_from([PERFORMED]), FADES),
 )
 
@@ -83,6 +89,7 @@ def test_every_kind_is_tried_here():
     assert made - {"Request"} == {
         "SetEmotion", "SetEmotions", "Neutral", "SetMuscle", "SetParameter", "SetActionUnit", "SetGaze", "LookAt",
         "SetHead", "Blink", "Play", "SetFap", "SetFaps", "SetArkit", "Speak", "Hush", "ShowViseme",
+        "Gesture", "SetLiveliness", "SetState",
     }  # fmt: skip
 
 
@@ -127,6 +134,9 @@ def test_the_methods_of_a_face_make_requests(face):
     face.speak([("p", 0, 0.1), ("AA1", 0.1, 0.3)], rate=1.2, interrupt=True)
     face.show_viseme("aa", 0.5, 1)
     face.hush()
+    face.gesture("brow-flash", 0.5)
+    face.set_liveliness(0.3)
+    face.set_state("listening")
     face.play(None, fade=0.1)
     assert noted == [
         SetEmotion("happiness", 0.5, 0.1, 1.0),
@@ -145,6 +155,9 @@ def test_the_methods_of_a_face_make_requests(face):
         Speak((Phone("p", 0.0, 0.1), Phone("AA1", 0.1, 0.3)), rate=1.2, interrupt=True),
         ShowViseme("aa", 0.5, 1.0),
         Hush(),
+        Gesture("brow_flash", 0.5),
+        SetLiveliness(0.3),
+        SetState("listening"),
         Play(None, 0.1),
     ]
 
@@ -186,6 +199,13 @@ def test_the_methods_of_a_face_make_requests(face):
         (lambda: ShowViseme("xyzzy", 1.0), "viseme"),
         (lambda: ShowViseme("aa", 1.5), "0..1"),
         (lambda: ShowViseme("aa", 0.5, -1), "seconds"),
+        (lambda: Gesture(3), "a name"),
+        (lambda: Gesture("nod", 2), "0..1"),
+        (lambda: SetLiveliness(1.5), "0..1"),
+        (lambda: SetLiveliness("0.6"), "number"),
+        (lambda: SetLiveliness(0.5, -1), "seconds"),
+        (lambda: SetState("busy"), "idle"),
+        (lambda: SetState(3), "idle"),
         (lambda: Play("nod.fap"), "a Performance"),
         (lambda: Play(None, -1), "seconds"),
     ],
@@ -202,6 +222,8 @@ def test_a_request_that_the_face_refuses_changes_nothing_and_is_not_noted(face):
     before = face.pose
     with pytest.raises(InvalidValueError, match="in front of the eyes"):
         face.look_at((0.0, 0.0, -1.0))
+    with pytest.raises(UnknownNameError, match="nod"):
+        face.gesture("nood")
     assert face.pose == before
     assert not noted
 

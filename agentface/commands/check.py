@@ -114,6 +114,8 @@ def _rule_readers() -> dict[str, _Loader]:
     from agentface.emotion.vocabularies import load_vocabularies
     from agentface.facs.action_units import load_action_units
     from agentface.motion.conflicts import load_conflicts
+    from agentface.motion.figures import load_life
+    from agentface.motion.gestures.table import load_gestures
     from agentface.mpeg4.fap_table import load_faps
     from agentface.speech.alphabets import load_phones
     from agentface.speech.visemes import load_visemes
@@ -125,6 +127,8 @@ def _rule_readers() -> dict[str, _Loader]:
         "conflicts.yaml": load_conflicts,
         "faps.yaml": load_faps,
         "phones.yaml": load_phones,
+        "gestures.yaml": load_gestures,
+        "life.yaml": load_life,
         "visemes.yaml": load_visemes,
         "vocabularies.yaml": load_vocabularies,
     }

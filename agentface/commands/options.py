@@ -144,6 +144,17 @@ deformer_option = click.option(
 )
 
 
+LIVELINESS = 0.6
+liveliness_option = click.option(
+    "--liveliness",
+    type=click.FloatRange(0, 1),
+    default=LIVELINESS,
+    metavar="V",
+    show_default=True,
+    help="How much the face lives between messages: 0, perfectly still, to 1.",
+)
+
+
 def given(ctx: click.Context) -> set[str]:
     """The names of the options that are on the command line."""
     return {name for name in ctx.params if ctx.get_parameter_source(name) is ParameterSource.COMMANDLINE}
@@ -158,7 +169,13 @@ def face_options(command: _Command) -> _Command:
 
 
 def make_face(
-    face: str, deformer: str, *, compiled: bool = True, look: str | None = None, running: bool = False
+    face: str,
+    deformer: str,
+    *,
+    compiled: bool = True,
+    look: str | None = None,
+    running: bool = False,
+    liveliness: float = 0.0,
 ) -> Face:
     """The face that the options name; not ``compiled``, it is ready sooner and slow a frame.
 
@@ -168,7 +185,7 @@ def make_face(
     from agentface.face import Face
 
     with _wait_told(face, compiled=compiled):
-        made = Face(face, deformer=deformer, compiled=compiled, look=look)
+        made = Face(face, deformer=deformer, compiled=compiled, look=look, liveliness=liveliness)
         if running:
             made.warm_up()
     return made

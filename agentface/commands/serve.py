@@ -16,6 +16,7 @@ from agentface.commands.options import (
     face_options,
     given,
     live_quality_option,
+    liveliness_option,
     look_option,
     make_face,
     size_option,
@@ -43,6 +44,7 @@ _RECORD = "Film the face; a name like face-%05d.png gives numbered transparent p
 @click.option("--duration", type=click.FloatRange(min=0, min_open=True), metavar="S", help="Stop after S seconds.")
 @click.option("--fps", type=click.FloatRange(1, 240), default=None, help="Frames a second: 60, or 30 when recording.")
 @look_option
+@liveliness_option
 @size_option
 @live_quality_option
 @camera_option
@@ -58,6 +60,7 @@ def serve(
     duration: float | None,
     fps: float | None,
     look: str | None,
+    liveliness: float,
     size: tuple[int, int],
     quality: str | None,
     camera: str,
@@ -71,7 +74,7 @@ def serve(
     _check_options(given(ctx), window=view == "window", record=record is not None)
     from agentface.io.osc.server import OscServer
 
-    shown = make_face(face, deformer, look=look, running=True)
+    shown = make_face(face, deformer, look=look, running=True, liveliness=liveliness)
     with until_told() as ending, OscServer(shown, *osc) as server:
         if view == "window":
             _in_a_window(server, shown, ending, look, quality, camera)
@@ -83,7 +86,7 @@ def serve(
             return
         shot = Shot(record, size, camera, quality or "fast", rate, look, live=True)
         if every_frame:
-            _film_later(server, shown, ending, shot, end, make_face(face, deformer, look=look))
+            _film_later(server, shown, ending, shot, end, make_face(face, deformer, look=look, liveliness=liveliness))
         else:
             _film_now(server, shown, ending, shot, end)
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import click
 
 from agentface.commands.ending import until_told
-from agentface.commands.options import face_options, live_quality_option, look_option, make_face
+from agentface.commands.options import face_options, live_quality_option, liveliness_option, look_option, make_face
 from agentface.commands.streams import say
 
 if TYPE_CHECKING:
@@ -20,10 +20,11 @@ if TYPE_CHECKING:
 @click.command()
 @live_quality_option
 @look_option
+@liveliness_option
 @face_options
-def show(*, quality: str | None, look: str | None, face: str, deformer: str) -> None:
+def show(*, quality: str | None, look: str | None, liveliness: float, face: str, deformer: str) -> None:
     """Open the live window: a panel with sliders, keys 1 to 6 for the emotions, the mouse for the view."""
-    shown = make_face(face, deformer, look=look, running=True)
+    shown = make_face(face, deformer, look=look, running=True, liveliness=liveliness)
     with until_told() as ending:
         make_window(shown, look=look, quality=quality).run(stopped=ending.told)
 

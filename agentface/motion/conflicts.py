@@ -17,7 +17,10 @@ from agentface.motion.channel import Rank, parameters_meant
 from agentface.parameters import GROUPS, Way, parameter
 from agentface.resources import rules_file
 
-CHANNELS = ("emotion", "gaze", "head", "action_units", "performance", "faps", "arkit", "speech", "blink", "muscles")
+CHANNELS = (
+    *("emotion", "gaze", "head", "life", "gestures"),
+    *("action_units", "performance", "faps", "arkit", "speech", "blink", "muscles"),
+)
 """The face's own channels; a program adds others."""
 
 

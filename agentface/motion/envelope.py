@@ -71,11 +71,11 @@ class Envelope:
         self._elapsed[places] = 0.0
         self._settle((self.value == self.target).all() and not self.velocity.any())
 
-    def glide(self, value: npt.ArrayLike, velocity: npt.ArrayLike, fade: float) -> None:
-        """Go to 0 within ``fade`` seconds from ``value``, kept within the range, which moves on with ``velocity``."""
+    def glide(self, value: npt.ArrayLike, velocity: npt.ArrayLike, fade: float, target: npt.ArrayLike = 0.0) -> None:
+        """Go to ``target`` within ``fade`` seconds from ``value``, kept in its range, which moves with ``velocity``."""
         self.value[:], self.velocity[:] = np.clip(value, self.low, self.high), velocity
-        self.target[:] = np.nan  # no value is on its way to 0 already
-        self.move(0.0, fade)
+        self.target[:] = np.nan  # no value is on its way there already
+        self.move(target, fade)
 
     def advance(self, dt: float) -> Doubles:
         """Let ``dt`` seconds pass; returns ``value``."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, MutableMapping
+from collections.abc import Iterator, Mapping, MutableMapping
 from dataclasses import replace
 from typing import TypeVar
 
@@ -17,14 +17,21 @@ from agentface.motion.channel import Channel, Rank
 from agentface.motion.conflicts import Conflicts, default_conflicts
 from agentface.motion.emotion import EmotionChannel, EmotionRules
 from agentface.motion.faps import FapChannel
+from agentface.motion.figures import LifeTable, default_life
+from agentface.motion.gaze import GazeChannel
+from agentface.motion.gestures.channel import GestureChannel, lag_sides
+from agentface.motion.gestures.gesture import GestureForm
+from agentface.motion.gestures.table import all_gestures
+from agentface.motion.life.channel import LifeChannel
 from agentface.motion.muscles import MuscleChannel
 from agentface.motion.playing import PerformanceChannel
 from agentface.motion.speech import SpeechChannel
 from agentface.motion.turns import TurnChannel
-from agentface.parameters import COUNT, HIGH, LOW, NEUTRAL, WAYS, FacePose, Way, parameter
+from agentface.parameters import COUNT, HIGH, LOW, NEUTRAL, PARAMETERS, WAYS, FacePose, Way, parameter
 
 _Channel = TypeVar("_Channel", bound=Channel)
 _NEUTRAL, _LOW, _HIGH = (limits.astype(np.float64) for limits in (NEUTRAL, LOW, HIGH))
+_HEAD = [known.index for known in PARAMETERS if known.kind == "head"]
 
 
 class _Layer:
@@ -72,6 +79,12 @@ class _Step:
         values[self._places] = wanted
 
 
+def _blend(steps: tuple[_Step, ...], values: Doubles, wants: list[bytes]) -> None:
+    for step in steps:
+        if wants[step.number]:
+            step.blend(values, wants[step.number])
+
+
 def _compact(places: list[int]) -> slice | npt.NDArray[np.intp]:
     """Places as a slice where they follow one another: numpy then copies nothing."""
     first, last = places[0], places[-1]
@@ -81,16 +94,18 @@ def _compact(places: list[int]) -> slice | npt.NDArray[np.intp]:
 class Mixer(MutableMapping[str, Channel]):
     """Channels by name; each is blended over those of lower priority, by the ways and priorities of its rank.
 
-    The face's own are ``emotion``, ``gaze``, ``head``, ``action_units``, ``performance``, ``faps``, ``speech``,
-    ``blink`` and ``muscles``,
-    also to be had as attributes; they stay. A program adds others, ``mixer["breath"] = channel`` or :meth:`add`, and
-    deletes them again; a face shows it from its next step on.
+    The face's own are ``emotion``, ``gaze``, ``head``, ``life``, ``gestures``, ``action_units``, ``performance``,
+    ``faps``, ``speech``, ``blink`` and ``muscles``, also to be had as attributes; they stay. A program adds others,
+    ``mixer["breath"] = channel`` or :meth:`add`, and deletes them again; a face shows it from its next step on.
 
     Args:
         rules: what makes contractions of emotions.
         gains: ``(COUNT,)``, what each side of the face makes of what an emotion wants of both; 1 when None.
         conflicts: the channels' ranks; those of ``rules/conflicts.yaml`` when None.
         compiled: False for numpy instead of compiled kernels.
+        random: of everything random in the motion.
+        life: the figures of a living face; those of ``rules/life.yaml`` when None.
+        gestures: by name; those of ``rules/gestures.yaml`` and the user's when None.
     """
 
     def __init__(
@@ -100,21 +115,27 @@ class Mixer(MutableMapping[str, Channel]):
         conflicts: Conflicts | None = None,
         *,
         compiled: bool = True,
+        random: np.random.Generator | None = None,
+        life: LifeTable | None = None,
+        gestures: Mapping[str, GestureForm] | None = None,
     ) -> None:
         self._conflicts = conflicts or default_conflicts()
         self._layers: dict[str, _Layer] = {}
+        self._turning: tuple[_Step, ...] = ()
         self._steps: tuple[_Step, ...] = ()
         self._values: Doubles = np.zeros(COUNT)
         self._wanted: tuple[bytes, ...] | None = None
         self._pose = FacePose()
         self.emotion = self._own("emotion", EmotionChannel(rules, gains))
-        self.gaze = self._own("gaze", TurnChannel("gaze"))
-        self.head = self._own("head", TurnChannel("head"))
+        table, head, blink = life or default_life(), TurnChannel("head"), BlinkChannel()
+        self.gaze = self._own("gaze", GazeChannel(head, table.look_at))
+        self.head = self._own("head", head)
+        self._live(table, random or np.random.default_rng(0), blink, all_gestures() if gestures is None else gestures)
         self.action_units = self._own("action_units", ActionUnitChannel())
         self.performance = self._own("performance", PerformanceChannel())
         self.faps = self._own("faps", FapChannel())
         self.speech = self._own("speech", SpeechChannel(compiled=compiled, yields=self._conflicts.yields))
-        self.blink = self._own("blink", BlinkChannel())
+        self.blink = self._own("blink", blink)
         self.muscles = self._own("muscles", MuscleChannel())
         self._fixed = frozenset(self._layers)
 
@@ -152,15 +173,17 @@ class Mixer(MutableMapping[str, Channel]):
 
         Raises InvalidValueError for a channel that wants what is no finite number.
         """
-        wanted = tuple([layer.write() for layer in self._layers.values()])
-        if wanted == self._wanted:
-            return self._pose
+        wants = [layer.write() for layer in self._layers.values()]
         values = self._values
         values[:] = _NEUTRAL
-        for step in self._steps:
-            wants = wanted[step.number]
-            if wants:
-                step.blend(values, wants)
+        _blend(self._turning, values, wants)
+        if self.gaze.steady:
+            self.gaze.head_is(*np.minimum(np.maximum(values, _LOW), _HIGH)[_HEAD].tolist())
+            wants[self._gaze_layer] = self._layers["gaze"].write()
+        wanted = tuple(wants)
+        if wanted == self._wanted:
+            return self._pose
+        _blend(self._steps, values, wants)
         np.minimum(np.maximum(values, _LOW, out=values), _HIGH, out=values)
         try:
             self._pose = FacePose(values)
@@ -215,6 +238,16 @@ class Mixer(MutableMapping[str, Channel]):
     def __len__(self) -> int:
         return len(self._layers)
 
+    def _live(
+        self, table: LifeTable, random: np.random.Generator, blink: BlinkChannel, gestures: Mapping[str, GestureForm]
+    ) -> None:
+        pairs = sorted({pair for gesture in gestures.values() for pair in gesture.pairs})
+        lags = random.uniform(-table.sides.lag_s, table.sides.lag_s, len(pairs)).tolist()
+        gesturing = GestureChannel(gestures, lag_sides(pairs, dict(zip(pairs, lags, strict=True))))
+        self.life = self._own("life", LifeChannel(table, random, self.gaze, blink, gesturing))
+        self.gestures = self._own("gestures", gesturing)
+        self.gaze.movers = [self.life, self.gestures]
+
     def _own(self, name: str, channel: _Channel) -> _Channel:
         self._put(name, channel, self._conflicts.rank(name))
         return channel
@@ -230,15 +263,21 @@ class Mixer(MutableMapping[str, Channel]):
         self._arrange()
 
     def _arrange(self) -> None:
-        """Sort the parameters of all layers into steps, those of the lowest priority first."""
-        steps: dict[tuple[int, int, Way], list[int]] = {}
+        """Sort the parameters of all layers into steps, those of the lowest priority first; the head's by themselves:
+        where the eyes have to turn depends on them.
+        """
+        steps: tuple[dict[tuple[int, int, Way], list[int]], ...] = ({}, {})
         layers = tuple(self._layers.values())
         for number, layer in enumerate(layers):
             for row, name in enumerate(layer.names):
-                steps.setdefault((layer.rank.priority_of(name), number, layer.rank.way_of(name)), []).append(row)
-        self._steps = tuple(
-            _Step(number, layers[number], way, rows) for (_, number, way), rows in sorted(steps.items())
+                turns = parameter(name).index in _HEAD
+                key = (layer.rank.priority_of(name), number, layer.rank.way_of(name))
+                steps[turns].setdefault(key, []).append(row)
+        self._steps, self._turning = (
+            tuple(_Step(number, layers[number], way, rows) for (_, number, way), rows in sorted(found.items()))
+            for found in steps
         )
+        self._gaze_layer = list(self._layers).index("gaze") if "gaze" in self._layers else 0
         self._wanted = None
 
     def _blame(self, wanted: tuple[bytes, ...]) -> InvalidValueError:

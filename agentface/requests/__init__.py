@@ -11,6 +11,8 @@ from agentface.requests.arkit import SetArkit
 from agentface.requests.blink import Blink
 from agentface.requests.emotion import SetEmotion, SetEmotions
 from agentface.requests.fap import SetFap, SetFaps
+from agentface.requests.gesture import Gesture
+from agentface.requests.life import SetLiveliness, SetState
 from agentface.requests.muscle import SetMuscle, SetParameter
 from agentface.requests.neutral import Neutral
 from agentface.requests.performance import Play
@@ -23,6 +25,7 @@ __all__ = [
     "GAZE_FADE_S",
     "HEAD_FADE_S",
     "Blink",
+    "Gesture",
     "Hush",
     "LookAt",
     "Movable",
@@ -37,8 +40,10 @@ __all__ = [
     "SetFaps",
     "SetGaze",
     "SetHead",
+    "SetLiveliness",
     "SetMuscle",
     "SetParameter",
+    "SetState",
     "ShowViseme",
     "Speak",
 ]

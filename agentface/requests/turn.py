@@ -8,7 +8,8 @@ from dataclasses import dataclass
 
 from agentface.conventions import check_duration, check_finite
 from agentface.errors import InvalidValueError
-from agentface.parameters import check_degrees, parameter
+from agentface.motion.eyesight import Eyesight
+from agentface.parameters import check_degrees
 from agentface.requests.request import Movable, Request
 
 GAZE_FADE_S = 0.06
@@ -47,9 +48,10 @@ class LookAt(Request):
 
     Attributes:
         x, y, z: metres in the model's axes, where the head is not turned: to the person's left, up, forward.
-        fade: seconds.
+        fade: what the eyes take, in seconds; the head takes its own time, but with 0 both are there at once.
 
-    A point too far aside is looked at as far as the eyes turn. Which points are in front of the eyes is the face's to
+    The eyes stay on the point while the head turns. If it is too far aside for the eyes, the head joins them; beyond
+    both ranges they go as far as they can. Which points are in front of the eyes is the face's to
     say: applied to a face, a point that is not raises InvalidValueError.
     """
 
@@ -80,9 +82,9 @@ class LookAt(Request):
         """Tell the gaze's channel."""
         from agentface.deform.eyes.eyeballs import toward
 
-        limits = (parameter(name) for name in ("gaze_yaw", "gaze_pitch", "gaze_vergence"))
-        aims = zip(limits, toward(face.model, (self.x, self.y, self.z)), strict=True)
-        face.channels.gaze.turn(tuple(min(max(aim, limit.low), limit.high) for limit, aim in aims), self.fade)
+        point = (self.x, self.y, self.z)
+        toward(face.model, point)  # raises for one that is not in front of the eyes
+        face.channels.gaze.look_at(Eyesight.of(face.model), point, self.fade)
 
 
 @dataclass(frozen=True, slots=True)

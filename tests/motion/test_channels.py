@@ -83,7 +83,7 @@ class Oracle:
             for index in indices_of(muscle):
                 value = float(GAINS[index]) * float(self.emotion.value[row])
                 if muscle == "orbicularis_oculi_palpebralis":
-                    value = max(value, closure)
+                    value += closure * (1.0 - value)
                 if muscle == "levator_palpebrae":
                     value *= 1.0 - closure
                 name = NAMES[index]

@@ -13,6 +13,7 @@ from agentface.mpeg4.fap_stream import EXPRESSION, EXPRESSION_FIELDS, VISEME, VI
 from agentface.mpeg4.fap_table import FAP_COUNT
 from agentface.requests import (
     Blink,
+    Gesture,
     Hush,
     LookAt,
     Neutral,
@@ -25,8 +26,10 @@ from agentface.requests import (
     SetFaps,
     SetGaze,
     SetHead,
+    SetLiveliness,
     SetMuscle,
     SetParameter,
+    SetState,
     ShowViseme,
     Speak,
 )
@@ -206,6 +209,21 @@ def _hush(arguments: Sequence[Any]) -> Request | None:
     return Hush() if pressed(arguments) else None
 
 
+def _gesture(arguments: Sequence[Any]) -> Request:
+    _count(arguments, "name [strength]", 1, 2)
+    return Gesture(*arguments)
+
+
+def _liveliness(arguments: Sequence[Any]) -> Request:
+    _count(arguments, "liveliness", 1, 1)
+    return SetLiveliness(*arguments)
+
+
+def _state(arguments: Sequence[Any]) -> Request:
+    _count(arguments, "[state]", 0, 1)
+    return SetState(*arguments or (None,))
+
+
 def _blink(arguments: Sequence[Any]) -> Request | None:
     return Blink() if pressed(arguments) else None
 
@@ -251,4 +269,7 @@ _READERS: dict[str, Reader] = {
     "visemes": _visemes,
     "hush": _hush,
     "blink": _blink,
+    "gesture": _gesture,
+    "liveliness": _liveliness,
+    "state": _state,
 }

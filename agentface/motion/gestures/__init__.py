@@ -1,0 +1,1 @@
+"""Gestures: short movements by name, made of key poses."""

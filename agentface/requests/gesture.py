@@ -1,0 +1,36 @@
+"""Ask for a gesture."""
+
+from __future__ import annotations
+
+from collections.abc import Hashable
+from dataclasses import dataclass
+
+from agentface.conventions import check_fraction
+from agentface.errors import InvalidValueError
+from agentface.motion.gestures.table import known_as
+from agentface.requests.request import Movable, Request
+
+
+@dataclass(frozen=True, slots=True)
+class Gesture(Request):
+    """Do a gesture once, ``strength`` 0..1 times as far as it stands in the table.
+
+    Which gestures there are is the face's to say: applied to a face, another name raises UnknownNameError.
+    """
+
+    name: str
+    strength: float = 1.0
+
+    def __post_init__(self) -> None:
+        if not isinstance(self.name, str):
+            raise InvalidValueError("gesture", "a name", self.name)
+        self._keep(name=known_as(self.name), strength=check_fraction("strength", self.strength))
+
+    @property
+    def key(self) -> tuple[Hashable, ...]:
+        """Each gesture by itself."""
+        return type(self).__name__, self.name
+
+    def apply(self, face: Movable) -> None:
+        """Tell the gestures' channel."""
+        face.channels.gestures.play(self.name, self.strength)
