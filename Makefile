@@ -76,7 +76,7 @@ $(INSTALLED): pyproject.toml
 	@$(PYTHON) -c 'import ensurepip, venv' 2>/dev/null || { $(call debian,python3-venv); }
 	$(PYTHON) -m venv $(VENV)
 	$(BIN)/python -m pip install --quiet --upgrade 'pip>=25.1'
-	$(BIN)/python -m pip install --quiet --editable '.[window]' --group dev
+	$(BIN)/python -m pip install --quiet --editable '.[window,speech,sound]' --group dev
 	@touch $@
 
 opengl: $(INSTALLED)

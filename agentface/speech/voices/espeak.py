@@ -12,10 +12,9 @@ from agentface.errors import InvalidValueError, SpeechError, UnknownNameError
 from agentface.speech.phones import Phone
 from agentface.speech.sound import Sound
 from agentface.speech.voices.child import Child
-from agentface.speech.voices.voice import TOOL_S, Utterance, cannot_pronounce, check_speech_rate, word_start
+from agentface.speech.voices.voice import SILENCE, TOOL_S, Utterance, cannot_pronounce, check_speech_rate, word_start
 
 ESPEAK = "espeak"
-PAUSE = "pau"
 _SCRIPT = Path(__file__).with_name("espeak_child.py")
 _MISSING = "expected the library libespeak-ng.so.1, got none; install it, on Debian:  apt-get install libespeak-ng1"
 _CLOSURE_S = 0.06
@@ -52,9 +51,9 @@ class Espeak:
         except (KeyError, TypeError, ValueError, InvalidValueError) as error:
             self.close()
             raise SpeechError(f"expected espeak-ng to tell phones and a sound, got {error}") from error
-        if all(phone.symbol == PAUSE for phone in phones):
+        if all(phone.symbol == SILENCE for phone in phones):
             raise cannot_pronounce(sentence, self.name)
-        end = phones[-1].end_s
+        end = next(phone.end_s for phone in reversed(phones) if phone.symbol != SILENCE)
         befores = [word_start(sentence, mark) for mark in marks]
         times = (next((at for place, at in words if place >= before), end) for before in befores)
         return Utterance(sound, phones, tuple(min(at, end) for at in times))
@@ -84,16 +83,16 @@ def _phones(events: Sequence[tuple[float, str]], until_s: float) -> tuple[Phone,
     starts = sorted(((at, symbol) for at, symbol in starts if symbol is not None), key=lambda start: start[0])
     phones: list[Phone] = []
     if starts and starts[0][0] > 0.0:
-        phones.append(Phone(PAUSE, 0.0, starts[0][0]))
+        phones.append(Phone(SILENCE, 0.0, starts[0][0]))
     for (at, symbol), (end, _next) in zip(starts, [*starts[1:], (until_s, "")], strict=True):
         before = phones[-1] if phones else None
         if end <= at:
             continue
-        closure = symbol == PAUSE and end - at <= _CLOSURE_S
-        if before is not None and (symbol == before.symbol == PAUSE or closure):
+        closure = symbol == SILENCE and end - at <= _CLOSURE_S
+        if before is not None and (symbol == before.symbol == SILENCE or closure):
             phones[-1] = Phone(before.symbol, before.start_s, end)
         else:
-            phones.append(Phone(symbol or PAUSE, at, end))
+            phones.append(Phone(symbol or SILENCE, at, end))
     return tuple(phones)
 
 
@@ -101,4 +100,4 @@ def _symbol(ipa: str) -> str | None:
     """A phone as espeak-ng writes it; None for what is none: ``(en)``, where it changes to another language."""
     if ipa.startswith("("):
         return None
-    return ipa.strip("-. '_|") or PAUSE
+    return ipa.strip("-. '_|") or SILENCE

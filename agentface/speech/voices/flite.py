@@ -17,10 +17,10 @@ from agentface.errors import SpeechError, UnknownNameError
 from agentface.speech.phones import Phone
 from agentface.speech.sound import Sound
 from agentface.speech.voices.program import run_program
-from agentface.speech.voices.voice import TOOL_S, Utterance, cannot_pronounce, check_speech_rate, word_start
+from agentface.speech.voices.voice import SILENCE, TOOL_S, Utterance, cannot_pronounce, check_speech_rate, word_start
 
 FLITE_VOICES = ("slt", "rms", "awb", "kal16", "kal")
-PAUSE = "pau"
+_PAUSES = ("pau", "ssil", "h#")
 _PHONE = re.compile(r"([a-z]{1,4}):(\d{1,4}\.\d{1,6})")
 _LONGEST_S = 180.0
 _OFF_S = 0.25
@@ -51,7 +51,7 @@ class Flite:
         with tempfile.TemporaryDirectory(prefix="agentface-") as folder:
             phones = self._said(sentence, stretch, Path(folder), "speech.wav", end)
             sound = _sound(Path(folder) / "speech.wav")
-            if all(phone.symbol == PAUSE for phone in phones):
+            if all(phone.symbol == SILENCE for phone in phones):
                 raise cannot_pronounce(sentence, self.name)
             if phones[-1].end_s > sound.duration_s + _OFF_S:
                 raise _garbage(f"phones until {phones[-1].end_s:g} s of {sound.duration_s:g} s of sound")
@@ -59,16 +59,25 @@ class Flite:
             times = tuple(self._mark(before, phones, Path(folder), end) for before in befores)
         return Utterance(sound, phones, times)
 
+    def pronounce(self, word: str) -> tuple[str, ...]:
+        """The phones of a word in ARPAbet; raises InvalidValueError for one that it cannot pronounce."""
+        with tempfile.TemporaryDirectory(prefix="agentface-") as folder:
+            said = self._said(word, 1.0, Path(folder), "none", time.monotonic() + TOOL_S)
+        phones = tuple(phone.symbol for phone in said if phone.symbol != SILENCE)
+        if not phones:
+            raise cannot_pronounce(word, self.name)
+        return phones
+
     def close(self) -> None:
         """Nothing runs on."""
 
     def _mark(self, before: str, phones: Sequence[Phone], folder: Path, end: float) -> float:
         """When the first phone is heard that does not belong to the text ``before``: flite counts that text's own."""
-        heard = [phone for phone in phones if phone.symbol != PAUSE]
+        heard = [phone for phone in phones if phone.symbol != SILENCE]
         count = 0
         if any(character.isalnum() for character in before):
-            count = sum(phone.symbol != PAUSE for phone in self._said(before, 1.0, folder, "none", end))
-        return heard[count].start_s if count < len(heard) else phones[-1].end_s
+            count = sum(phone.symbol != SILENCE for phone in self._said(before, 1.0, folder, "none", end))
+        return heard[count].start_s if count < len(heard) else heard[-1].end_s
 
     def _said(self, text: str, stretch: float, folder: Path, output: str, end: float) -> tuple[Phone, ...]:
         # -t takes what follows as text, whatever it begins with
@@ -80,7 +89,7 @@ class Flite:
             until = float(found[2]) if found else 0.0
             if found is None or not start < until <= _LONGEST_S:
                 raise _garbage(word)
-            phones.append(Phone(found[1], start, until))
+            phones.append(Phone(SILENCE if found[1] in _PAUSES else found[1], start, until))
             start = until
         if not phones:
             raise _garbage("nothing")

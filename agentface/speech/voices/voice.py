@@ -13,6 +13,7 @@ from agentface.speech.sound import Sound
 
 TOOL_S = 4.5
 """What a tool has not done with one sentence by then, it will not do."""
+SILENCE = "sil"
 SLOWEST, FASTEST = 0.5, 2.0
 
 
@@ -22,7 +23,7 @@ class Utterance:
 
     Attributes:
         sound: what is heard.
-        phones: one after the other, pauses among them as ``pau``, all within the sound.
+        phones: one after the other, pauses among them as ``sil``, all within the sound.
         marks_s: when the characters that were asked about are spoken, in seconds.
     """
 
@@ -43,6 +44,7 @@ class Voice(Protocol):
             sentence: text; never an option or the name of a file, whatever it looks like.
             rate: how fast, 0.5..2.
             marks: places in the sentence, in characters: when is the word that begins there, or after it, heard?
+                After the last one, its end.
 
         Raises InvalidValueError for a sentence that it cannot pronounce, SpeechError where the tool fails.
         """
