@@ -11,10 +11,10 @@ from agentface.speech.text import check_text, nothing_to_say, sentences, spoken
 
 @dataclass(frozen=True, slots=True)
 class Line:
-    """One sentence; ``at`` of its cues counts the sentence's own characters."""
+    """One sentence; ``at`` of its tags counts the sentence's own characters."""
 
     text: str
-    cues: tuple[Tag, ...] = ()
+    tags: tuple[Tag, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,10 +40,10 @@ class Script:
             # what stands before the first word belongs to the first sentence, what stands between two to the second
             before = -1 if number == 0 else found[number - 1].start + len(found[number - 1].text) - 1
             end = len(tagged.text) if last else sentence.start + len(sentence.text) - 1
-            cues = tuple(
-                replace(cue, at=min(max(cue.at - sentence.start, 0), len(sentence.text)))
-                for cue in tagged.cues
-                if before < cue.at <= end
+            tags = tuple(
+                replace(tag, at=min(max(tag.at - sentence.start, 0), len(sentence.text)))
+                for tag in tagged.tags
+                if before < tag.at <= end
             )
-            lines.append(Line(sentence.text, cues))
+            lines.append(Line(sentence.text, tags))
         return cls(tuple(lines), tagged.unknown)

@@ -6,8 +6,6 @@ import re
 from collections.abc import Callable
 from dataclasses import dataclass
 
-USUAL_LEVEL = 0.7
-"""How strong an emotion is whose tag does not say it."""
 _BRACKETS = re.compile(r"\[([^\[\]\n]{0,60})\]")
 _FORM = re.compile(r"\s*(?:face\s*:\s*)?([^:]+?)\s*(?::\s*(\d*\.?\d+)\s*)?", re.IGNORECASE)
 
@@ -19,12 +17,12 @@ class Tag:
     Attributes:
         at: the number of characters before it.
         name: what is to be shown.
-        level: 0..1.
+        level: 0..1; None where the tag does not say it.
     """
 
     at: int
     name: str
-    level: float
+    level: float | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,7 +30,7 @@ class Tagged:
     """A text without its tags: what they ask for, in their order, and those that nobody knows, as they stood there."""
 
     text: str
-    cues: tuple[Tag, ...]
+    tags: tuple[Tag, ...]
     unknown: tuple[str, ...]
 
 
@@ -43,18 +41,18 @@ def split_tags(text: str, known: Callable[[str], str | None]) -> Tagged:
     stands in brackets, up to 60 characters. ``known`` gives the emotion that a name means, or None.
     """
     plain, place = "", 0
-    cues: list[Tag] = []
+    tags: list[Tag] = []
     unknown: list[str] = []
-    for tag in _BRACKETS.finditer(text):
-        plain = _joined(plain, text[place : tag.start()])
-        place = tag.end()
-        cue = _cue(tag[1], len(plain), known)
-        if cue is None:
-            unknown.append(tag[0])
+    for found in _BRACKETS.finditer(text):
+        plain = _joined(plain, text[place : found.start()])
+        place = found.end()
+        tag = _tag(found[1], len(plain), known)
+        if tag is None:
+            unknown.append(found[0])
         else:
-            cues.append(cue)
+            tags.append(tag)
     plain = _joined(plain, text[place:])
-    return Tagged(re.sub(r"[\[\]]", " ", plain), tuple(cues), tuple(unknown))
+    return Tagged(re.sub(r"[\[\]]", " ", plain), tuple(tags), tuple(unknown))
 
 
 def _joined(before: str, after: str) -> str:
@@ -62,9 +60,9 @@ def _joined(before: str, after: str) -> str:
     return before + (after[1:] if after[:1] == " " and before[-1:] in ("", " ", "\n") else after)
 
 
-def _cue(inside: str, at: int, known: Callable[[str], str | None]) -> Tag | None:
+def _tag(inside: str, at: int, known: Callable[[str], str | None]) -> Tag | None:
     form = _FORM.fullmatch(inside)
     if form is None:
         return None
-    name, level = known(form[1]), float(form[2] or USUAL_LEVEL)
-    return None if name is None or level > 1.0 else Tag(at, name, level)
+    name, level = known(form[1]), None if form[2] is None else float(form[2])
+    return None if name is None or (level or 0.0) > 1.0 else Tag(at, name, level)

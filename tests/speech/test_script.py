@@ -47,24 +47,24 @@ def test_what_is_for_the_eye_is_not_spoken(text, heard):
 @pytest.mark.parametrize(
     ("text", "plain", "cues", "unknown"),
     [
-        ("[joy] Hello", "Hello", [Tag(0, "happiness", 0.7)], []),
+        ("[joy] Hello", "Hello", [Tag(0, "happiness")], []),
         ("Hello, [face:surprise:0.7] you", "Hello, you", [Tag(7, "surprise", 0.7)], []),
         ("a [JOY:1] b [ face : joy : .25 ] c", "a b c", [Tag(2, "happiness", 1.0), Tag(4, "happiness", 0.25)], []),
         ("so[1] it [laughs] [joy:7] [face:x:y:z] is", "so it is", [], ["[1]", "[laughs]", "[joy:7]", "[face:x:y:z]"]),
-        ("[] [[joy]] x", "   x", [Tag(1, "happiness", 0.7)], ["[]"]),
+        ("[] [[joy]] x", "   x", [Tag(1, "happiness")], ["[]"]),
         ("an [open one", "an  open one", [], []),
     ],
 )
 def test_words_in_brackets(text, plain, cues, unknown):
     found = split_tags(text, known)
-    assert (found.text, list(found.cues), list(found.unknown)) == (plain, cues, unknown)
+    assert (found.text, list(found.tags), list(found.unknown)) == (plain, cues, unknown)
 
 
 def test_cues_stand_at_their_words():
     script = Script.of("[joy] One two. [neutral] Three [surprise:0.2] four. [joy]", known)
     assert script.lines == (
-        Line("One two.", (Tag(0, "happiness", 0.7),)),
-        Line("Three four.", (Tag(0, "neutral", 0.7), Tag(6, "surprise", 0.2), Tag(11, "happiness", 0.7))),
+        Line("One two.", (Tag(0, "happiness"),)),
+        Line("Three four.", (Tag(0, "neutral"), Tag(6, "surprise", 0.2), Tag(11, "happiness"))),
     )
 
 
@@ -118,11 +118,11 @@ def test_every_known_tag_becomes_one_cue_of_one_line(pieces):
         script = Script.of(text, known)
     except InvalidValueError:
         return
-    cues = [cue for line in script.lines for cue in line.cues]
+    cues = [cue for line in script.lines for cue in line.tags]
     assert len(cues) == len(expected)
     for line in script.lines:
-        assert [cue.at for cue in line.cues] == sorted(cue.at for cue in line.cues)
-        assert all(0 <= cue.at <= len(line.text) for cue in line.cues)
+        assert [cue.at for cue in line.tags] == sorted(cue.at for cue in line.tags)
+        assert all(0 <= cue.at <= len(line.text) for cue in line.tags)
         assert "[" not in line.text
 
 

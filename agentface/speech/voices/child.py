@@ -42,7 +42,10 @@ class Child:
                 raise SpeechError(f"{expected}, got {error}; it was ended") from error
 
     def close(self) -> None:
-        """End the process; may be called twice."""
+        """End the process, also while it is asked; may be called twice."""
+        process = self._process
+        if process is not None:
+            _kill(process)
         with self._lock:
             self._end()
 
@@ -90,9 +93,13 @@ class Child:
         process, self._process = self._process, None
         if process is None:
             return
-        with suppress(ProcessLookupError, PermissionError):
-            os.killpg(process.pid, signal.SIGKILL)
+        _kill(process)
         for pipe in (process.stdin, process.stdout):
             if pipe is not None:
                 pipe.close()
         process.wait()
+
+
+def _kill(process: subprocess.Popen[bytes]) -> None:
+    with suppress(ProcessLookupError, PermissionError):
+        os.killpg(process.pid, signal.SIGKILL)
