@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from agentface.errors import InvalidValueError, SpeechError, UnknownNameError
+from agentface.speech.alphabets import phone_table
 from agentface.speech.phones import Phone
 from agentface.speech.sound import Sound
 from agentface.speech.voices.child import Child
@@ -17,6 +19,8 @@ from agentface.speech.voices.voice import SILENCE, TOOL_S, Utterance, cannot_pro
 ESPEAK = "espeak"
 _SCRIPT = Path(__file__).with_name("espeak_child.py")
 _MISSING = "expected the library libespeak-ng.so.1, got none; install it, on Debian:  apt-get install libespeak-ng1"
+_LETTERS = str.maketrans({"\u03b5": "\u025b"})
+"""Its Danish has a Greek letter."""
 _CLOSURE_S = 0.06
 """A silence inside a word that is no longer belongs to the phone before it."""
 
@@ -79,25 +83,36 @@ class Espeak:
 
 def _phones(events: Sequence[tuple[float, str]], until_s: float) -> tuple[Phone, ...]:
     """The phones of events of time in ms and IPA: each lasts until the next one."""
-    starts = [(min(max(float(ms) / 1000.0, 0.0), until_s), _symbol(str(ipa))) for ms, ipa in events]
-    starts = sorted(((at, symbol) for at, symbol in starts if symbol is not None), key=lambda start: start[0])
-    phones: list[Phone] = []
-    if starts and starts[0][0] > 0.0:
-        phones.append(Phone(SILENCE, 0.0, starts[0][0]))
-    for (at, symbol), (end, _next) in zip(starts, [*starts[1:], (until_s, "")], strict=True):
-        before = phones[-1] if phones else None
+    starts = sorted(
+        (min(max(float(ms) / 1000.0, 0.0), until_s), place, str(ipa)) for place, (ms, ipa) in enumerate(events)
+    )
+    ends = [at for at, _, _ in starts[1:]] + [until_s]
+    phones = [Phone(SILENCE, 0.0, starts[0][0])] if starts and starts[0][0] > 0.0 else []
+    for (at, _, ipa), end in zip(starts, ends, strict=True):
+        symbol = _symbol(ipa)
         if end <= at:
             continue
-        closure = symbol == SILENCE and end - at <= _CLOSURE_S
-        if before is not None and (symbol == before.symbol == SILENCE or closure):
+        before = phones[-1] if phones else None
+        joins = symbol is None or (symbol == SILENCE and end - at <= _CLOSURE_S) or symbol == SILENCE == _name(before)
+        if before is not None and joins:
             phones[-1] = Phone(before.symbol, before.start_s, end)
         else:
             phones.append(Phone(symbol or SILENCE, at, end))
     return tuple(phones)
 
 
+def _name(phone: Phone | None) -> str:
+    return "" if phone is None else phone.symbol
+
+
+@lru_cache(maxsize=1000)
 def _symbol(ipa: str) -> str | None:
-    """A phone as espeak-ng writes it; None for what is none: ``(en)``, where it changes to another language."""
-    if ipa.startswith("("):
+    """A phone as the mouth knows it; None for what is none: a sign by itself, or ``(en)``, a change of language."""
+    symbol = ipa.translate(_LETTERS).strip("-. '_|")
+    if not symbol:
+        return SILENCE
+    try:
+        phone_table().looks([symbol], "ipa")
+    except UnknownNameError:
         return None
-    return ipa.strip("-. '_|") or SILENCE
+    return symbol
