@@ -13,8 +13,9 @@ debian = if [ "$$(id -u)" = 0 ] && command -v apt-get >/dev/null; \
 	else echo "Debian packages are missing. Run this once:"; \
 	echo "    sudo apt-get install --no-install-recommends $(1)"; exit 1; fi
 
-# programs that only tests need, and the Debian packages that bring them; as in tests/tools.py
-TOOLS := xvfb-run:xvfb xauth:xauth xdotool:xdotool xprop:x11-utils oscsend:liblo-tools oscdump:liblo-tools node:nodejs npm:npm
+# programs and libraries that the voices and tests need, and the Debian packages that bring them; as in tests/tools.py
+TOOLS := xvfb-run:xvfb xauth:xauth xdotool:xdotool xprop:x11-utils oscsend:liblo-tools oscdump:liblo-tools node:nodejs npm:npm flite:flite
+LIBRARIES := libespeak-ng.so.1:libespeak-ng1
 
 .DEFAULT_GOAL := help
 .PHONY: help demo test lint quick soak matrix docs build clean opengl tools warm
@@ -75,7 +76,7 @@ $(INSTALLED): pyproject.toml
 	@$(PYTHON) -c 'import ensurepip, venv' 2>/dev/null || { $(call debian,python3-venv); }
 	$(PYTHON) -m venv $(VENV)
 	$(BIN)/python -m pip install --quiet --upgrade 'pip>=25.1'
-	$(BIN)/python -m pip install --quiet --editable '.[window]' --group dev
+	$(BIN)/python -m pip install --quiet --editable '.[window,speech,sound]' --group dev
 	@touch $@
 
 opengl: $(INSTALLED)
@@ -84,4 +85,7 @@ opengl: $(INSTALLED)
 
 tools:
 	@missing=; for tool in $(TOOLS); do command -v $${tool%%:*} >/dev/null || missing="$$missing $${tool#*:}"; done; \
+	for library in $(LIBRARIES); do \
+		$(PYTHON) -c "import ctypes; ctypes.CDLL('$${library%%:*}')" 2>/dev/null || missing="$$missing $${library#*:}"; \
+	done; \
 	if [ -n "$$missing" ]; then $(call debian,$$missing); fi

@@ -134,6 +134,10 @@ class OutputError(AgentFaceError):
     """A file that cannot be written."""
 
 
+class SpeechError(AgentFaceError):
+    """No voice, no recogniser or no way to hear it on this machine, or one that fails."""
+
+
 class ServerError(AgentFaceError):
     """A server that cannot start, for example because its port is taken."""
 

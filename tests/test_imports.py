@@ -26,7 +26,7 @@ LAYERS = (
     ("motion",),
     ("arkit",),
     ("requests",),
-    ("view",),
+    ("view", "talk"),
     ("face",),
     ("live",),
     ("io",),
@@ -46,6 +46,8 @@ OWNERS = {
     "socket": {"io"},
     "pythonosc": {"io"},
     "av": {"io"},
+    "miniaudio": {"io"},
+    "pocketsphinx": {"speech"},
     "defusedxml": {"io"},
     "PIL": {"head", "io", "view", "studies"},
 }

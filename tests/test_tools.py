@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.tools import PACKAGES
+from tests.tools import LIBRARIES, PACKAGES
 
 ROOT = Path(__file__).parent.parent
 
@@ -58,3 +58,5 @@ def test_a_file_that_is_skipped_whole_is_a_failure_too(tmp_path, required, code)
 def test_the_makefile_brings_every_tool():
     tools = re.search(r"^TOOLS := (.+)$", (ROOT / "Makefile").read_text(), re.MULTILINE)
     assert dict(pair.split(":") for pair in tools[1].split()) == PACKAGES
+    libraries = re.search(r"^LIBRARIES := (.+)$", (ROOT / "Makefile").read_text(), re.MULTILINE)
+    assert dict(pair.split(":") for pair in libraries[1].split()) == LIBRARIES

@@ -8,6 +8,8 @@ from __future__ import annotations
 
 import os
 import shutil
+import subprocess
+import sys
 from collections.abc import Generator
 
 import pytest
@@ -21,8 +23,11 @@ PACKAGES = {
     "oscdump": "liblo-tools",
     "node": "nodejs",
     "npm": "npm",
+    "flite": "flite",
 }
 """The Debian packages in which the programs are; the Makefile installs them."""
+LIBRARIES = {"libespeak-ng.so.1": "libespeak-ng1"}
+"""Likewise the libraries."""
 
 
 def strict() -> bool:
@@ -32,9 +37,19 @@ def strict() -> bool:
 
 def require(*programs: str) -> None:
     """Go on only where all ``programs`` are on the PATH: else skip the test, or fail it when skips are failures."""
-    missing = [name for name in programs if not shutil.which(name)]
+    _require_none([name for name in programs if not shutil.which(name)], PACKAGES)
+
+
+def require_library(name: str) -> None:
+    """Likewise for a library: whether another process can load it, for it may have a licence that is not ours."""
+    load = [sys.executable, "-I", "-S", "-c", f"import ctypes; ctypes.CDLL({name!r})"]
+    there = subprocess.run(load, check=False, capture_output=True).returncode == 0
+    _require_none([] if there else [name], LIBRARIES)
+
+
+def _require_none(missing: list[str], packaged: dict[str, str]) -> None:
     if missing:
-        packages = " ".join(dict.fromkeys(PACKAGES.get(name, name) for name in missing))
+        packages = " ".join(dict.fromkeys(packaged.get(name, name) for name in missing))
         message = f"not on this machine: {', '.join(missing)}; apt-get install {packages} brings what is missing"
         (pytest.fail if strict() else pytest.skip)(message)
 

@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from agentface.io.sequence import SequenceWriter
     from agentface.io.video import VideoWriter
     from agentface.live.films import FilmSink
+    from agentface.speech.sound import Sound
 
 
 @dataclass(frozen=True)
@@ -35,15 +36,17 @@ class Shot:
     live: bool = False
 
     @contextmanager
-    def open(self, model: HeadModel, last_s: float | None = None) -> Iterator[FilmSink]:
+    def open(self, model: HeadModel, last_s: float | None = None, sound: Sound | None = None) -> Iterator[FilmSink]:
         """Films ``model`` until the end of the block; the bar is full at ``last_s``, without it there is none.
+
+        ``sound`` is heard from its start; numbered pictures come without it.
 
         What cannot be written or drawn is told at its beginning, and then, as without frames, no file is left. All of
         it is for one thread: OpenGL draws in the one that begins.
         """
         from agentface.live.films import FilmSink
 
-        with self._writer() as writer, progress(self.path.name, last_s) as advance:
+        with self._writer(sound) as writer, progress(self.path.name, last_s) as advance:
             yield FilmSink(self._drawing(model), writer, advance)
 
     def _drawing(self, model: HeadModel) -> Callable[[FaceGeometry], Bytes]:
@@ -64,11 +67,11 @@ class Shot:
     def _transparent(self) -> bool:
         return self.path.suffix.lower() == ".png"
 
-    def _writer(self) -> VideoWriter | SequenceWriter:
+    def _writer(self, sound: Sound | None) -> VideoWriter | SequenceWriter:
         if self._transparent:
             from agentface.io.sequence import SequenceWriter
 
             return SequenceWriter(self.path, self.size, self.fps, keep=self.live)
         from agentface.io.video import VideoWriter
 
-        return VideoWriter(self.path, self.size, self.fps, keep=self.live)
+        return VideoWriter(self.path, self.size, self.fps, keep=self.live, sound=sound)

@@ -128,9 +128,9 @@ def _film(face: Face, found: Opened, shot: Shot, ending: Ending) -> None:
     from agentface.live.loop import run
 
     player, length_s = player_of(found, face)
-    fps = shot.fps
+    fps, sound = shot.fps, found.sound()
     frames = math.ceil(length_s * fps - 1e-6)
-    with shot.open(face.model, (frames - 1) / fps) as film:
+    with shot.open(face.model, (frames - 1) / fps, sound) as film:
         end = (frames - 0.5) / fps
         drawn = run(face, FrameClock(fps), [player], [film], fps=fps, duration=end, stopped=ending.told)
     if drawn < frames:

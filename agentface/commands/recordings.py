@@ -22,9 +22,12 @@ if TYPE_CHECKING:
     from agentface.live.loop import Source
     from agentface.motion.performance import Performance
     from agentface.mpeg4.fap_stream import FapStream
+    from agentface.speech.sound import Sound
 
 _MOST_NOTES = 5
 USUAL_HZ = 30.0
+_FILM_HZ = 48_000
+"""Samples a second of the sound of a film."""
 
 file_fps_option = click.option(
     "--file-fps",
@@ -58,6 +61,15 @@ class Opened:
         own = len(getattr(self.recording, "notes", ()))
         self.tell_notes(performance.notes[own:])
         return performance
+
+    def sound(self) -> Sound | None:
+        """What is heard with it, if it says so; raises DataError for a sound that cannot be read."""
+        from agentface.io.sound import read_sound
+        from agentface.motion.performance import Performance
+
+        if not isinstance(self.recording, Performance) or self.recording.sound is None:
+            return None
+        return read_sound(self.path.parent / self.recording.sound, _FILM_HZ)
 
     @property
     def _frames(self) -> float | None:

@@ -14,6 +14,8 @@ from typing import TYPE_CHECKING, Any, BinaryIO, Self
 from agentface.conventions import Bytes, check_finite, check_rate
 from agentface.errors import InvalidValueError, OutputError
 from agentface.io.files import cannot_write, check_writable
+from agentface.io.sound_track import SoundTrack, check_track
+from agentface.speech.sound import Sound
 
 if TYPE_CHECKING:
     from av.container import OutputContainer
@@ -37,14 +39,25 @@ class VideoWriter:
         size: width and height in pixels, both even: H.264 stores colour for two by two pixels.
         fps: the frame rate that is planned; the times given to ``add`` are what counts.
         keep: an error, or a full disk, too, leaves what is filmed until then: for what cannot be filmed again.
+        sound: heard from the start of the film until its end, at the latest.
 
     Raises OutputError when the file cannot be written, InvalidValueError for a wrong size or rate.
     """
 
-    def __init__(self, path: str | Path, size: tuple[int, int], fps: float = 30.0, *, keep: bool = False) -> None:
+    def __init__(
+        self,
+        path: str | Path,
+        size: tuple[int, int],
+        fps: float = 30.0,
+        *,
+        keep: bool = False,
+        sound: Sound | None = None,
+    ) -> None:
         path = Path(path)
         check_video_name(path)
         check_writable(path)
+        if sound is not None:
+            check_track(sound)
         if any(side < 2 or side % 2 for side in size):
             raise InvalidValueError("video size", "an even width and height", size)
         self.path, self.size, self._keep = path, size, keep
@@ -52,7 +65,7 @@ class VideoWriter:
         self._last = -1
         self._open = True
         self._file = _File(path)
-        self._container, self._stream = _open(path, self._file, size, fps)
+        self._container, self._stream, self._track = _open(path, self._file, size, fps, sound)
 
     def add(self, image: Bytes, time_s: float) -> None:
         """Show ``image`` ``(H, W, 3)`` uint8 from ``time_s`` on, which is later than the time of the last frame."""
@@ -67,6 +80,8 @@ class VideoWriter:
         frame.pts, frame.time_base = tick, Fraction(1, _TICKS)
         self._last = tick
         self._mux(frame)
+        if self._track is not None:
+            self._mux_sound(self._track.until(self._end_s))
 
     def close(self) -> None:
         """Write what is left; may be called twice. Raises OutputError when that fails, and removes the file or not."""
@@ -74,6 +89,8 @@ class VideoWriter:
             return
         try:
             self._mux(None)
+            if self._track is not None:
+                self._mux_sound(self._track.rest(self._end_s))
             with self._told():
                 self._container.close()
             self._open = False
@@ -102,6 +119,16 @@ class VideoWriter:
         with self._told():
             for packet in self._stream.encode(frame):
                 packet.duration = packet.duration or self._step
+                self._container.mux(packet)
+
+    @property
+    def _end_s(self) -> float:
+        """When the last picture goes."""
+        return (self._last + self._step) / _TICKS
+
+    def _mux_sound(self, packets: Iterator[Any]) -> None:
+        with self._told():
+            for packet in packets:
                 self._container.mux(packet)
 
     @contextmanager
@@ -197,7 +224,9 @@ def whole_fragments(file: BinaryIO) -> int:
     return file.seek(whole)
 
 
-def _open(path: Path, file: _File, size: tuple[int, int], fps: float) -> tuple[OutputContainer, VideoStream]:
+def _open(
+    path: Path, file: _File, size: tuple[int, int], fps: float, sound: Sound | None
+) -> tuple[OutputContainer, VideoStream, SoundTrack | None]:
     import av
     from av.error import FFmpegError
     from av.video.stream import VideoStream
@@ -219,6 +248,7 @@ def _open(path: Path, file: _File, size: tuple[int, int], fps: float) -> tuple[O
         stream.codec_context.time_base = Fraction(1, _TICKS)
         stream.codec_context.gop_size = max(1, round(fps))
         stream.codec_context.thread_count = _THREADS
+        track = None if sound is None else SoundTrack(container, sound)
         container.start_encoding()
     except (FFmpegError, OSError, ValueError) as error:
         file.close()
@@ -226,4 +256,4 @@ def _open(path: Path, file: _File, size: tuple[int, int], fps: float) -> tuple[O
         if file.error is not None:
             raise OutputError(cannot_write(path, file.error)) from error
         raise OutputError(f"{path}: cannot be written as H.264: {error}") from error
-    return container, stream
+    return container, stream, track

@@ -1,0 +1,314 @@
+from __future__ import annotations
+
+import gc
+import threading
+import time
+from collections import deque
+
+import numpy as np
+import pytest
+
+from agentface.emotion.state import EmotionState
+from agentface.errors import InvalidValueError, SpeechError
+from agentface.requests import Hush, Neutral, SetEmotion, Speak
+from agentface.requests.say import script_of
+from agentface.speech.phones import Phone
+from agentface.speech.script import Script
+from agentface.speech.sound import Sound
+from agentface.speech.speaker import Order, Speaker
+from agentface.speech.spoken import Spoken, joined, speak_line, speak_script
+from agentface.speech.voices.voice import Utterance
+from agentface.talk.talker import LEAD_S, MOST_TEXTS, Talker
+
+RATE = 8000
+
+
+class Voice:
+    """A second for each sentence: a phone for its first letter; a word begins so many hundredths after the start."""
+
+    name = "fake"
+
+    def __init__(self):
+        self.said, self.closed, self.go = [], False, threading.Event()
+        self.go.set()
+
+    def speak(self, sentence, rate=1.0, marks=()):
+        assert self.go.wait(20)
+        if sentence.startswith("Bad"):
+            raise SpeechError("no")
+        if sentence.startswith("Worse"):
+            raise ZeroDivisionError("a bug")
+        self.said.append(sentence)
+        length = 1.0 / rate
+        sound = Sound(np.full(round(RATE * length), ord(sentence[0]), np.int16), RATE)
+        return Utterance(sound, (Phone(sentence[0].lower(), 0.0, length),), tuple(0.01 * mark for mark in marks))
+
+    def close(self):
+        self.closed = True
+
+
+class Face:
+    """Notes what it is asked, and when."""
+
+    def __init__(self, voice=None):
+        self.voice = voice or Voice()
+        self.speaker = Speaker(lambda _voice, _language, ours=self.voice: ours)
+        self.talker = Talker(self, self.speaker)
+        self.now, self.emotion, self.asked = 0.0, EmotionState.of(happiness=0.2), []
+
+    def apply(self, request):
+        if isinstance(request, SetEmotion):
+            change = (
+                {request.emotion: request.intensity}
+                if request.emotion != "neutral"
+                else dict.fromkeys(self.emotion, 0.0)
+            )
+            self.emotion = EmotionState.of(self.emotion.as_dict() | change)
+        self.asked.append((round(self.now, 6), request))
+        self.talker.notice(request)
+
+    def say(self, text, **options):
+        self.talker.say(text, Order(script_of(text)), **options)
+
+    def run(self, seconds, dt=0.1):
+        end = self.now + seconds
+        while self.now < end - 1e-9:
+            left = min(dt, end - self.now)
+            while self.talker.due_s < left:
+                left -= self._pass(self.talker.due_s)
+            self._pass(left)
+
+    def _pass(self, dt):
+        self.now += dt
+        self.talker.advance(dt)
+        return dt
+
+    @property
+    def spoken(self):
+        """When each phone is said."""
+        return [(round(at + r.start, 6), r.phones[0].symbol) for at, r in self.asked if isinstance(r, Speak)]
+
+    @property
+    def shown(self):
+        return [(at, r.emotion, r.intensity) for at, r in self.asked if isinstance(r, SetEmotion)]
+
+
+@pytest.fixture
+def face():
+    return Face()
+
+
+def ready(face):
+    face.talker.wait()
+
+
+def test_sentences_follow_each_other_without_a_gap_and_are_told_before_their_turn(face):
+    face.say("One. Two. Three.")
+    ready(face)
+    face.run(4.0)
+    assert face.spoken == [(0.1, "o"), (1.1, "t"), (2.1, "t")]
+    told = [at for at, _ in face.asked]
+    assert told[1] == pytest.approx(1.1 - LEAD_S, abs=0.1)
+    assert [len(r.phones) for _, r in face.asked] == [1, 1, 1]
+
+
+def test_the_first_sentence_does_not_wait_for_the_second():
+    face = Face()
+    voice = face.voice
+    speak = voice.speak
+
+    def slow_second(sentence, rate=1.0, marks=()):
+        if sentence == "Two.":
+            voice.go.clear()
+        return speak(sentence, rate, marks)
+
+    voice.speak = slow_second
+    face.say("One. Two.")
+    face.run(0.1)
+    until(lambda: voice.said == ["One."])
+    face.run(0.5)
+    assert [symbol for _, symbol in face.spoken] == ["o"]
+    face.run(2.0)
+    voice.go.set()
+    ready(face)
+    face.run(1.0)
+    assert face.spoken[1] == (pytest.approx(2.7, abs=0.11), "t"), "late, and then at once"
+
+
+def until(condition, within_s=20.0):
+    end = time.monotonic() + within_s
+    while not condition():
+        assert time.monotonic() < end
+        time.sleep(0.005)
+
+
+def test_texts_wait_their_turn_and_interrupt(face):
+    ended = []
+    face.talker.ended.append(ended.append)
+    face.say("One. Two.")
+    face.say("Three.")
+    assert face.talker.texts == ("One. Two.", "Three.")
+    ready(face)
+    face.run(2.5)
+    assert face.spoken == [(0.1, "o"), (1.1, "t"), (2.1, "t")]
+    assert ended == ["One. Two."]
+    hushed = []
+    face.talker.hushed.append(lambda: hushed.append(face.now))
+    face.say("Now!", interrupt=True)
+    assert hushed == [2.5]
+    ready(face)
+    face.run(2.0)
+    assert face.spoken[-1] == (2.6, "n")
+    assert face.asked[-1][1].interrupt
+    assert ended == ["One. Two.", "Now!"]
+
+
+@pytest.mark.parametrize("request_", [Hush(), Neutral(), Speak((Phone("a", 0, 1),), interrupt=True)])
+def test_hush_ends_everything(face, request_):
+    hushed = []
+    face.talker.hushed.append(lambda: hushed.append(face.now))
+    face.say("[joy] One. [sad] Two.")
+    face.say("Three.")
+    ready(face)
+    face.run(0.5)
+    face.apply(request_)
+    assert hushed == [0.5]
+    assert face.emotion["happiness"] == pytest.approx(0.2)
+    count = len(face.asked)
+    face.run(5.0)
+    assert len(face.asked) == count
+    assert face.talker.texts == ()
+    assert face.talker.due_s == np.inf
+    face.say("Four.")
+    ready(face)
+    face.run(0.2)
+    assert [symbol for _, symbol in face.spoken][-1] == "f"
+
+
+def test_what_is_spoken_in_another_way_does_not_end_it(face):
+    face.say("One. Two.")
+    ready(face)
+    face.run(0.2)
+    face.apply(Speak((Phone("a", 0, 1),)))
+    face.run(1.5)
+    assert [symbol for _, symbol in face.spoken] == ["o", "a", "t"]
+
+
+@pytest.mark.parametrize("dt", [0.1, 1 / 30, 1 / 144, 0.7])
+def test_emotions_come_at_their_words_and_go(dt):
+    face = Face()
+    face.talker.latency_s = 0.0
+    face.say("[surprise:0.5] Tom said [joy] hello. [neutral] Yes.")
+    ready(face)
+    face.run(dt, dt)
+    face.run(4.0, dt)
+    start = face.spoken[0][0]
+    assert [(round(at - start, 6), *rest) for at, *rest in face.shown] == [
+        (0.0, "surprise", 0.5),
+        (0.09, "surprise", 0.0),
+        (0.09, "happiness", 0.7),
+        (1.0, "neutral", 1.0),
+    ]
+
+
+def test_after_a_text_the_face_is_as_before(face):
+    face.say("[joy] One. [sad] Two [joy:1] three.")
+    ready(face)
+    face.run(1.5)
+    assert face.emotion["happiness"] == 1.0
+    face.run(2.0)
+    assert face.emotion == EmotionState.of(happiness=0.2)
+    assert face.shown[-1][0] == pytest.approx(2.1, abs=1e-6)
+
+
+def test_sounds_are_heard_when_they_are_seen(face):
+    heard = []
+    face.talker.latency_s = 0.06
+    face.talker.heard.append(lambda sound, in_s: heard.append((round(face.now + in_s, 6), chr(sound.samples[0]))))
+    face.say("One. Two.")
+    ready(face)
+    face.run(3.0)
+    assert [(round(at - 0.06, 6), symbol.upper()) for at, symbol in face.spoken] == heard
+
+
+@pytest.mark.parametrize(("text", "said"), [("One. Bad. Two.", "no"), ("Worse.", "ZeroDivisionError")])
+def test_what_goes_wrong_is_told_and_ends_its_text_alone(face, text, said):
+    failed, ended = [], []
+    face.talker.failed.append(failed.append)
+    face.talker.ended.append(ended.append)
+    face.say(text)
+    face.say("Four.")
+    ready(face)
+    face.run(3.0)
+    assert [said in str(error) for error in failed] == [True]
+    assert face.talker.error is failed[0]
+    assert ended == [text, "Four."]
+    assert "Two." not in face.voice.said
+    assert face.spoken[-1][1] == "f"
+
+
+def test_texts_that_wait_are_limited(face):
+    face.voice.go.clear()
+    for _ in range(MOST_TEXTS):
+        face.say("One.")
+    with pytest.raises(InvalidValueError, match="waiting"):
+        face.say("Two.")
+    face.say("Three.", interrupt=True)
+    face.voice.go.set()
+    ready(face)
+    face.run(0.3)
+    assert [symbol for _, symbol in face.spoken] == ["t"]
+    assert face.talker.texts == ("Three.",)
+
+
+def test_a_face_that_is_gone_takes_its_voices_along():
+    face = Face()
+    voice = face.voice
+    face.say("One.")
+    ready(face)
+    threads = [thread for thread in threading.enumerate() if thread.name == "agentface-voice"]
+    assert threads
+    del face
+    gc.collect()
+    until(lambda: voice.closed)
+    for thread in threads:
+        thread.join(10)
+
+
+def test_a_closed_speaker_is_silent():
+    speaker = Speaker(lambda *_: Voice())
+    speaker.close()
+    speaker.ask(Order(Script.of("One.")))
+    speaker.wait()
+    assert speaker.take() is None
+    speaker.close()
+
+
+def test_parts_are_joined_to_the_sample():
+    voice = Voice()
+    script = script_of("[joy] Ah. Be it [sad] so. Ce.")
+    whole = speak_script(voice, script)
+    parts = [speak_line(voice, line) for line in script.lines]
+    assert whole == joined(parts)
+    assert whole.duration_s == 3.0
+    assert [(p.symbol, p.start_s, p.end_s) for p in whole.phones] == [("a", 0, 1), ("b", 1, 2), ("c", 2, 3)]
+    assert [chr(whole.sound.samples[round(at * RATE)]) for at in (0.0, 0.999, 1.0, 2.5)] == ["A", "A", "B", "C"]
+    assert [(at, tag.name) for at, tag in whole.tags] == [(0.0, "happiness"), (pytest.approx(1.06), "sadness")]
+    assert whole.text == "Ah. Be it so. Ce."
+    short = Spoken(Sound(np.zeros(80, np.int16), RATE), (Phone("a", 0, 0.5),))
+    assert joined([short, short]).sound.duration_s == 1.0, "phones may outlast their sound"
+    with pytest.raises(InvalidValueError, match="rate"):
+        joined([short, Spoken(Sound(np.zeros(80, np.int16), 16_000), ())])
+
+
+def test_nothing_waits_for_voices():
+    face = Face()
+    face.voice.go.clear()
+    face.say("One.")
+    face.run(1.0)
+    assert not face.asked
+    face.voice.go.set()
+    ready(face)
+    face.run(0.1)
+    assert face.spoken == [(pytest.approx(1.1, abs=1e-6), "o")]
+    assert isinstance(deque(face.asked).pop()[1], Speak)
