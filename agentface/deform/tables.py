@@ -16,7 +16,7 @@ from agentface.deform.finish.order import FinishTables
 from agentface.deform.midpoints import MidpointTables
 from agentface.deform.morphs import MorphTables
 from agentface.deform.mouth import contact, jaw, lips
-from agentface.deform.mouth.contact import ContactTables
+from agentface.deform.mouth.contact_tables import ContactTables
 from agentface.deform.mouth.jaw import JawTables
 from agentface.deform.mouth.lips import LipTables
 from agentface.deform.muscles import limits, volumes

@@ -9,7 +9,7 @@ import numpy as np
 
 from agentface.conventions import Floats
 from agentface.deform.morphs_compiled import jaw_slide
-from agentface.deform.mouth.contact import APART, PARTINGS, ROUNDS
+from agentface.deform.mouth.contact import APART, PARTINGS, ROUNDS, TOUCH
 from agentface.deform.mouth.contact_tables import ContactTables
 from agentface.deform.mouth.lip_bite_compiled import bite
 from agentface.deform.mouth.lip_parting_compiled import close, part, seal
@@ -63,19 +63,24 @@ def _hold_out(tables: ContactTables, values: Floats, bitten: np.float32, points:
 
 
 @kernel(error_model="numpy", inline="always")
-def _push(tables: ContactTables, arch: int, k: int, bitten: float, x: float, y: float, z: float) -> Any:
+def _push(tables: ContactTables, arch: int, k: int, bitten: np.float32, x: float, y: float, z: float) -> Any:
     kept = tables.kept[arch, k]
     if kept < _ZERO:
         return _ZERO, _ZERO
-    kept -= bitten * tables.relief[arch, k]
     beyond = (tables.arch[arch, 2] - y) / tables.arch[arch, 3]
     if beyond >= _ONE:
         return _ZERO, _ZERO
     share = min(_ONE, _ONE - beyond)
     share = share * share * (_THREE - _TWO * share)
-    slope = _TWO * tables.arch[arch, 1] * x
+    front, bend = tables.arch[arch, 0], tables.arch[arch, 1]
+    if bitten > _ZERO:
+        relief = bitten * tables.relief[k]
+        front += relief * (tables.crowns[arch, 0] - front)
+        bend += relief * (tables.crowns[arch, 1] - bend)
+        kept += relief * (TOUCH - kept)
+    slope = _TWO * bend * x
     steepness = np.float32(math.sqrt(_ONE + slope * slope))
-    distance = (z - tables.arch[arch, 0] + tables.arch[arch, 1] * x * x) / steepness
+    distance = (z - front + bend * x * x) / steepness
     soft = tables.softness[arch, k]
     over = soft - (distance - kept)
     if over <= _ZERO:

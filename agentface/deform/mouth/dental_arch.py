@@ -44,7 +44,7 @@ class Arch:
         return np.asarray(arch_distance(points, self.front, self.bend)[0], np.float64)
 
 
-def arch_distance(places: _Places, front: float, bend: float) -> tuple[_Places, _Places]:
+def arch_distance(places: _Places, front: float | _Places, bend: float | _Places) -> tuple[_Places, _Places]:
     """Distance ``(K,)`` m, positive in front, and normal ``(K, 2)`` (x, z) of the surface z = front - bend x^2.
 
     To first order (Taubin 1991): exact on the surface, and near enough within the thickness of a lip.

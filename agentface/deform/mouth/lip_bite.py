@@ -25,7 +25,7 @@ RINGS = (2, 7)
 
 def bite(tables: ContactTables, level: np.float32, points: Floats) -> None:
     """Bring the rim of the lower lip to the incisors by ``level`` of its way; the upper lip gives way to it."""
-    edge, front, bend = tables.incisors[2], tables.incisors[0], tables.incisors[1]
+    front, bend, edge, _ = tables.crowns[0]
     rings = tables.grid[RINGS[0] : RINGS[1]]
     rim = points[rings[:, tables.lower]]
     up = edge + ABOVE - rim[..., 1].max(axis=0)

@@ -16,7 +16,7 @@ _FIRST, _LAST = RINGS
 @kernel(error_model="numpy")
 def bite(tables: ContactTables, level: np.float32, points: Floats) -> None:
     """Brings the rim of the lower lip to the incisors by ``level`` of its way; as its twin."""
-    grid, edge = tables.grid, tables.incisors[2]
+    grid, edge = tables.grid, tables.crowns[0, 2]
     count = tables.lower.shape[0]
     up, back = np.empty(count, np.float32), np.empty(count, np.float32)
     for k in range(count):
@@ -26,7 +26,7 @@ def bite(tables: ContactTables, level: np.float32, points: Floats) -> None:
         rise, before = edge + ABOVE - top, np.float32(np.inf)
         for ring in range(_FIRST, _LAST):
             x, y, z = points[grid[ring, tables.lower[k]]]
-            distance = z - tables.incisors[0] + tables.incisors[1] * x * x
+            distance = z - tables.crowns[0, 0] + tables.crowns[0, 1] * x * x
             before = min(before, distance + OUT_OF_REACH * max(edge - (y + rise), _ZERO))
         up[k] = min(max(rise, -REACH), REACH)
         back[k] = -min(max(REACH / max(abs(rise), REACH) * (before + BEYOND), _ZERO), BACK)

@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, TypeVar
+from typing import TypeVar
 
 import numpy as np
 import numpy.typing as npt
 
 from agentface.conventions import Doubles, Floats, Indices
-
-if TYPE_CHECKING:
-    from agentface.deform.mouth.contact_tables import ContactTables
+from agentface.deform.mouth.contact_tables import ContactTables
 
 _Points = TypeVar("_Points", Floats, Doubles)
 SPREAD, STEEP = np.float32(1.07), np.float32(4.0)
