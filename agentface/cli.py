@@ -17,6 +17,7 @@ COMMANDS = (
     "serve",
     "show",
     "play",
+    "say",
     "convert",
     "explain",
     "check",

@@ -35,6 +35,7 @@ from agentface.requests import (
     Neutral,
     Play,
     Request,
+    Say,
     SetActionUnit,
     SetArkit,
     SetEmotion,
@@ -51,6 +52,7 @@ from agentface.requests import (
 )
 from agentface.resources import DEFAULT_FACE
 from agentface.speech.phones import Phone
+from agentface.talk.talker import Talker
 
 if TYPE_CHECKING:
     from agentface.view.renderer import Renderer
@@ -117,6 +119,7 @@ class Face:
         SetLiveliness(liveliness, 0.0).apply(self)
         self._deformer = make_deformer(deformer, self.model, compiled=compiled)
         self._renderer: Renderer | None = None
+        self._talker: Talker | None = None
         self._look = look
         self._closed = False
         self._pose: FacePose | None = None
@@ -276,6 +279,27 @@ class Face:
         """
         self.apply(SetState(state))
 
+    def say(
+        self,
+        text: str,
+        *,
+        voice: str | None = None,
+        language: str = "en",
+        rate: float = 1.0,
+        interrupt: bool = False,
+        wait: bool = False,
+    ) -> None:
+        """Say a text, sentence by sentence, when its turn has come; ``interrupt``: in place of what is said now.
+
+        Emotions in brackets, as in ``[joy] Hello, [surprise:0.5] you``, are shown at their words. The text is spoken
+        in the background and begins with the step that finds its first sentence ready; ``wait`` until all of it is, as
+        in a program that steps faster than time passes, and it begins with the next one. What goes wrong in the
+        background is told to ``talker.failed``; that of a text or voice is raised: InvalidValueError, UnknownNameError.
+        """
+        self.apply(Say(text, voice, language, rate, interrupt))
+        if wait:
+            self.talker.wait()
+
     def step(self, dt: float) -> FaceGeometry:
         """Let ``dt`` seconds pass, and return the face as it is then.
 
@@ -283,7 +307,7 @@ class Face:
         """
         dt = check_duration("dt", dt)
         start = self._clock.now()
-        self.channels.advance(dt)
+        self._advance(dt)
         self._touch()
         geometry = self._deformer.step(self.pose, dt)
         self._stepped = self.pose, geometry
@@ -298,6 +322,26 @@ class Face:
         self._inference.contractions({EMOTIONS[0]: 1.0})
         self.channels.speech.warm_up()
         self._deformer.at(FacePose.of(**dict.fromkeys(MUSCLES, 1.0)))
+
+    @property
+    def talker(self) -> Talker:
+        """What has texts said, and tells when each is heard."""
+        if self._talker is None:
+            self._talker = Talker(self)
+            self.noted.append(self._talker.notice)
+        return self._talker
+
+    def _advance(self, dt: float) -> None:
+        talker = self._talker
+        if talker is not None:
+            talker.advance(0.0)
+        while talker is not None and (part := talker.due_s) < dt:
+            self.channels.advance(part)
+            talker.advance(part)
+            dt -= part
+        self.channels.advance(dt)
+        if talker is not None:
+            talker.advance(dt)
 
     @property
     def deformer(self) -> Deformer:
@@ -377,8 +421,10 @@ class Face:
         return self._renderer.render(geometry, size=size, camera=camera, quality=quality, alpha=alpha)
 
     def close(self) -> None:
-        """Give back what the face has taken from the graphics driver; it draws no more. May be called twice."""
+        """Give back what the face has taken from the graphics driver, and end its voices. May be called twice."""
         self._closed = True
+        if self._talker is not None:
+            self._talker.close()
         renderer, self._renderer = self._renderer, None
         if renderer is not None:
             renderer.close()

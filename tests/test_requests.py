@@ -23,6 +23,7 @@ from agentface.requests import (
     Neutral,
     Play,
     Request,
+    Say,
     SetActionUnit,
     SetEmotion,
     SetEmotions,
@@ -60,6 +61,7 @@ ANY_REQUEST = st.one_of(
     st.builds(Blink),
     st.builds(Speak, st.sampled_from([(), (Phone("p", 0, 0.1), Phone("aa", 0.1, 0.3))]), FADES, live=st.booleans()),
     st.builds(Hush),
+    st.builds(Say, st.sampled_from(("Hello.", "[joy] Yes")), st.none(), st.sampled_from(("en", "de"))),
     st.builds(ShowViseme, st.sampled_from(("aa", "viseme_PP", "iy")), FRACTIONS, st.none() | FADES),
     st.builds(Gesture, st.sampled_from(("nod", "Brow Flash", "glance")), FRACTIONS),
     st.builds(SetLiveliness, FRACTIONS, st.none() | FADES),
@@ -90,6 +92,7 @@ def test_every_kind_is_tried_here():
         "SetEmotion", "SetEmotions", "Neutral", "SetMuscle", "SetParameter", "SetActionUnit", "SetGaze", "LookAt",
         "SetHead", "Blink", "Play", "SetFap", "SetFaps", "SetArkit", "Speak", "Hush", "ShowViseme",
         "Gesture", "SetLiveliness", "SetState",
+        "Say",
     }  # fmt: skip
 
 
@@ -137,6 +140,7 @@ def test_the_methods_of_a_face_make_requests(face):
     face.gesture("brow-flash", 0.5)
     face.set_liveliness(0.3)
     face.set_state("listening")
+    face.say("Yes.", rate=1.5, interrupt=True)
     face.play(None, fade=0.1)
     assert noted == [
         SetEmotion("happiness", 0.5, 0.1, 1.0),
@@ -158,6 +162,7 @@ def test_the_methods_of_a_face_make_requests(face):
         Gesture("brow_flash", 0.5),
         SetLiveliness(0.3),
         SetState("listening"),
+        Say("Yes.", rate=1.5, interrupt=True),
         Play(None, 0.1),
     ]
 
@@ -197,6 +202,14 @@ def test_the_methods_of_a_face_make_requests(face):
         (lambda: Speak.of([("aa", 0, 1)], interrupt=1), "true or false"),
         (lambda: Speak.of([("aa", 0, 1)], alphabet="sampa"), "arpabet"),
         (lambda: ShowViseme("xyzzy", 1.0), "viseme"),
+        (lambda: Say(3), "text"),
+        (lambda: Say(" ... "), "spoken"),
+        (lambda: Say("a" * 10_001), "10000"),
+        (lambda: Say("Yes.", "slz"), "slt"),
+        (lambda: Say("Ja.", "slt", "de"), "English"),
+        (lambda: Say("Ja.", language=None), "german"),
+        (lambda: Say("Yes.", rate=3), "rate"),
+        (lambda: Say("Yes.", interrupt=1), "true or false"),
         (lambda: ShowViseme("aa", 1.5), "0..1"),
         (lambda: ShowViseme("aa", 0.5, -1), "seconds"),
         (lambda: Gesture(3), "a name"),

@@ -25,7 +25,8 @@ _Loader = Callable[[Path], object]
 def check(*, files: tuple[Path, ...], face: str | None, strict: bool, deformer: str) -> None:
     """Check rules, faces and performances: files, folders, or, if none is named, all that come with agentface.
 
-    Performances are EmotionML, .fap, tables of OpenFace, py-feat and Live Link Face, and poses in .json and .npz.
+    Performances are EmotionML, .fap, tables of OpenFace, py-feat and Live Link Face, and poses in .json and .npz;
+    a .json may also have the times of a recording's phones.
 
     Prints every fault with file and line; the exit code is 1 if there is any. A face need not have a tissue.yaml,
     unless --deformer is one that moves tissue.
@@ -88,16 +89,18 @@ def _faults_of_file(path: Path) -> list[Fault]:
     if path.suffix.lower() in (".yaml", ".yml", ".glb"):
         return [Fault(path, None, "", f"one of {', '.join(readers)}, or a performance", path.name)]
     from agentface.io.performances.kinds import load
+    from agentface.io.recorded_speech import is_phones_file, read_recorded
 
-    return _faults_in(lambda: load(path))
+    return _faults_in(lambda: read_recorded(path) if is_phones_file(path) else load(path))
 
 
 def _notes_of(path: Path) -> list[Fault]:
     """What of a performance without faults is not shown as it is written."""
-    if not path.is_file() or path.suffix.lower() in (".yaml", ".yml", ".glb"):
-        return []
     from agentface.io.performances.kinds import load
+    from agentface.io.recorded_speech import is_phones_file
 
+    if not path.is_file() or path.suffix.lower() in (".yaml", ".yml", ".glb") or is_phones_file(path):
+        return []
     return list(getattr(load(path)[1], "notes", ()))
 
 

@@ -26,8 +26,6 @@ if TYPE_CHECKING:
 
 _MOST_NOTES = 5
 USUAL_HZ = 30.0
-_FILM_HZ = 48_000
-"""Samples a second of the sound of a film."""
 
 file_fps_option = click.option(
     "--file-fps",
@@ -65,11 +63,12 @@ class Opened:
     def sound(self) -> Sound | None:
         """What is heard with it, if it says so; raises DataError for a sound that cannot be read."""
         from agentface.io.sound import read_sound
+        from agentface.io.video import SOUND_HZ
         from agentface.motion.performance import Performance
 
         if not isinstance(self.recording, Performance) or self.recording.sound is None:
             return None
-        return read_sound(self.path.parent / self.recording.sound, _FILM_HZ)
+        return read_sound(self.path.parent / self.recording.sound, SOUND_HZ)
 
     @property
     def _frames(self) -> float | None:

@@ -73,9 +73,11 @@ def serve(
     """
     _check_options(given(ctx), window=view == "window", record=record is not None)
     from agentface.io.osc.server import OscServer
+    from agentface.io.voice_output import VoiceOutput
 
     shown = make_face(face, deformer, look=look, running=True, liveliness=liveliness)
-    with until_told() as ending, OscServer(shown, *osc) as server:
+    shown.talker.failed.append(lambda error: tell(str(error)))
+    with until_told() as ending, OscServer(shown, *osc) as server, VoiceOutput(shown.talker, tell):
         if view == "window":
             _in_a_window(server, shown, ending, look, quality, camera)
             return
@@ -148,20 +150,22 @@ def _film_later(server: OscServer, face: Face, ending: Ending, shot: Shot, durat
     A slow machine films as smoothly as a fast one, and a deformer with memory has the same one.
     """
     from agentface.clock import FrameClock, SystemClock
+    from agentface.io.video import SOUND_HZ
+    from agentface.live.heard import HeardRecorder
     from agentface.live.loop import run
     from agentface.live.notes import Recorder, Replay
 
     with shot.open(face.model):
         pass  # what cannot be written or drawn is told before the recording
     _announce(face, server)
-    with Recorder(face) as recorder:
+    with Recorder(face) as recorder, HeardRecorder(face, recorder, shot.fps) as heard:
         run(face, SystemClock(), [server], [recorder], fps=shot.fps, duration=duration, stopped=ending.told)
     if recorder.last_s is None:
         return
     ending.go_on()  # told to stop again, it keeps what is drawn
     last = round(recorder.last_s * shot.fps)
     replay = Replay(again, recorder.notes, shot.fps)
-    with shot.open(face.model, last / shot.fps) as film:
+    with shot.open(face.model, last / shot.fps, heard.sound(SOUND_HZ)) as film:
         end = (last + 0.5) / shot.fps
         drawn = run(again, FrameClock(shot.fps), [replay], [film], fps=shot.fps, duration=end, stopped=ending.told)
     if drawn <= last:

@@ -11,13 +11,13 @@ from typing import Any, Self
 
 import numpy as np
 
-from agentface.conventions import check_duration
+from agentface.conventions import check_finite
 from agentface.errors import SpeechError
-from agentface.speech.sound import Samples, Sound
+from agentface.speech.sound import FADE_S, Samples, Sound
 
 _RATE_HZ = 48_000
-_BUFFER_MS = 60
-_FADE_S = 0.02
+BUFFER_S = 0.06
+"""About so much later than it is played a sound is heard."""
 _NO_MINIAUDIO = """expected the Python package miniaudio, got none; what is said is not heard.
 Install the extra that has it:  pip install "agentface[sound]\""""
 _NO_DEVICE = "expected a sound device, got none; what is said is not heard ({reason})"
@@ -37,7 +37,9 @@ class Loudspeaker:
         self._playing: list[tuple[int, Samples]] = []
         self._place = 0
         self._device = _opened(backend)
-        _resampled(Sound(np.zeros(1, np.int16), 16_000))  # loads what it needs, so that the first sound is not late
+        Sound(np.zeros(1, np.int16), 16_000).at_rate(
+            _RATE_HZ
+        )  # loads what it needs, so that the first sound is not late
         stream = self._stream()
         next(stream)
         try:
@@ -47,29 +49,19 @@ class Loudspeaker:
             self.close()
             raise _no_device(error) from error
 
-    @property
-    def latency_s(self) -> float:
-        """How much later than it is played a sound is heard, about."""
-        return _BUFFER_MS / 1000.0
-
     def play(self, sound: Sound, in_s: float = 0.0) -> None:
-        """Play ``sound`` in ``in_s`` seconds."""
-        samples = _resampled(sound)
-        delay = round(check_duration("in_s", in_s) * _RATE_HZ)
+        """Play ``sound`` in ``in_s`` seconds; below 0 for one that has begun so long ago."""
+        samples = sound.at_rate(_RATE_HZ).samples
+        delay = round(check_finite("in_s", in_s) * _RATE_HZ)
         with self._lock:
             self._playing.append((self._place + delay, samples))
 
     def hush(self) -> None:
-        """End all that is played or waits, within a fiftieth of a second."""
-        count = round(_FADE_S * _RATE_HZ)
-        fade = np.linspace(1.0, 0.0, count)
+        """End all that is played or waits, within ``FADE_S``."""
         with self._lock:
-            now = self._place
-            playing, self._playing = self._playing, []
-            for start, samples in playing:
-                rest = samples[max(now - start, 0) :][:count] if start <= now else samples[:0]
-                if len(rest):
-                    self._playing.append((now, (rest * fade[: len(rest)]).astype(np.int16)))
+            now, playing = self._place, self._playing
+            rests = [Sound(samples[now - start :], _RATE_HZ) for start, samples in playing if start <= now]
+            self._playing = [(now, rest.until(min(FADE_S, rest.duration_s)).samples) for rest in rests]
 
     @property
     def busy(self) -> bool:
@@ -110,16 +102,6 @@ class Loudspeaker:
         return np.clip(mixed, -32768, 32767).astype(np.int16)
 
 
-def _resampled(sound: Sound) -> Samples:
-    if sound.rate_hz == _RATE_HZ or not len(sound.samples):
-        return sound.samples
-    from scipy.signal import resample_poly
-
-    up = np.gcd(_RATE_HZ, sound.rate_hz)
-    samples = resample_poly(sound.samples.astype(np.float64), _RATE_HZ // up, sound.rate_hz // up)
-    return np.clip(np.round(samples), -32768, 32767).astype(np.int16)
-
-
 def _opened(backend: str | None) -> Any:
     try:
         import miniaudio
@@ -134,7 +116,7 @@ def _opened(backend: str | None) -> Any:
                 output_format=miniaudio.SampleFormat.SIGNED16,
                 nchannels=1,
                 sample_rate=_RATE_HZ,
-                buffersize_msec=_BUFFER_MS,
+                buffersize_msec=round(1000.0 * BUFFER_S),
                 backends=wanted,
                 app_name="agentface",
             )

@@ -11,10 +11,12 @@ import numpy as np
 
 from agentface.errors import DataError, Fault
 from agentface.io.files import write_file
-from agentface.speech.sound import LONGEST_S, Sound
+from agentface.speech.sound import Sound
 
 HEARD_HZ = 16_000
 """What recognisers of speech hear."""
+LONGEST_S = 600.0
+"""No longer recording is read."""
 _LARGEST_FILE = 1 << 30
 # playlists, which lead to other files and addresses, are not among them
 _FORMATS = "wav,w64,aiff,au,caf,flac,mp3,aac,ogg,matroska,webm,mov,mp4,m4a,3gp,avi,asf,mpegts,amr"

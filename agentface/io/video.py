@@ -21,6 +21,8 @@ if TYPE_CHECKING:
     from av.container import OutputContainer
     from av.video.stream import VideoStream
 
+SOUND_HZ = 48_000
+"""Samples a second of a film's sound, unless its source has fewer."""
 _TICKS = 90_000
 _THREADS = 2  # a number of the machine's own would show in the file
 _FRAGMENT_US = 250_000

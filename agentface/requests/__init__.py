@@ -17,6 +17,7 @@ from agentface.requests.muscle import SetMuscle, SetParameter
 from agentface.requests.neutral import Neutral
 from agentface.requests.performance import Play
 from agentface.requests.request import FADE_S, Movable, Request
+from agentface.requests.say import Say
 from agentface.requests.speech import Hush, ShowViseme, Speak
 from agentface.requests.turn import GAZE_FADE_S, HEAD_FADE_S, LookAt, SetGaze, SetHead
 
@@ -32,6 +33,7 @@ __all__ = [
     "Neutral",
     "Play",
     "Request",
+    "Say",
     "SetActionUnit",
     "SetArkit",
     "SetEmotion",

@@ -9,13 +9,21 @@ from typing import TYPE_CHECKING, Protocol
 if TYPE_CHECKING:
     from agentface.head.model import HeadModel
     from agentface.motion.mixer import Mixer
+    from agentface.speech.speaker import Order
 
 FADE_S = 0.25
 """What an emotion or a muscle takes to come, unless a request says otherwise."""
 
 
+class Sayer(Protocol):
+    """What has texts said."""
+
+    def say(self, text: str, order: Order, *, interrupt: bool = False) -> None:
+        """Say a text when its turn has come, or, with ``interrupt``, at once."""
+
+
 class Movable(Protocol):
-    """What a request reaches: a face's model and what moves it."""
+    """What a request reaches: a face's model, what moves it, and what speaks for it."""
 
     @property
     def model(self) -> HeadModel:
@@ -24,6 +32,10 @@ class Movable(Protocol):
     @property
     def channels(self) -> Mixer:
         """The channels by name."""
+
+    @property
+    def talker(self) -> Sayer:
+        """What has texts said."""
 
 
 class Request(ABC):

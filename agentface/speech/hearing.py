@@ -12,7 +12,7 @@ import numpy as np
 from agentface.errors import InvalidValueError, SpeechError
 from agentface.speech.phones import Phone
 from agentface.speech.sound import Sound
-from agentface.speech.voices.voice import SILENCE, Utterance, word_start
+from agentface.speech.voices.voice import SILENCE, Voiced, word_start
 
 HEARD_HZ = 16_000
 _FRAME_S = 0.01
@@ -28,7 +28,7 @@ Pronounce = Callable[[str], Iterable[str]]
 """The phones of a word, in ARPAbet; raises SpeechError or InvalidValueError."""
 
 
-def heard(sound: Sound) -> Utterance:
+def heard(sound: Sound) -> Voiced:
     """What a loop of all phones makes of a recording at ``HEARD_HZ``; about three frames in four are right.
 
     Raises SpeechError where there is no pocketsphinx, InvalidValueError for another rate.
@@ -37,10 +37,10 @@ def heard(sound: Sound) -> Utterance:
     decoder = _decoder(allphone=True)
     _listen(decoder, sound)
     found = [(part.word, part.start_frame, part.end_frame + 1) for part in decoder.seg() or ()]
-    return Utterance(sound, _phones(found, sound))
+    return Voiced(sound, _phones(found, sound))
 
 
-def aligned(sound: Sound, text: str, pronounce: Pronounce, marks: Sequence[int] = ()) -> Utterance:
+def aligned(sound: Sound, text: str, pronounce: Pronounce, marks: Sequence[int] = ()) -> Voiced:
     """The phones of ``text``, of which ``sound``, at ``HEARD_HZ``, is the recording.
 
     Args:
@@ -74,7 +74,7 @@ def aligned(sound: Sound, text: str, pronounce: Pronounce, marks: Sequence[int] 
     starts = [(word.end(), spoken[1] * _FRAME_S) for word, spoken in zip(words, found, strict=True)]
     end = min((found[-1][1] + found[-1][2]) * _FRAME_S, sound.duration_s)
     times = (next((at for until, at in starts if until > before), end) for before in befores)
-    return Utterance(sound, _phones(parts, sound), tuple(times))
+    return Voiced(sound, _phones(parts, sound), tuple(times))
 
 
 def _check(sound: Sound) -> None:

@@ -2,19 +2,23 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
+from math import gcd
 from typing import TypeAlias
 
 import numpy as np
 import numpy.typing as npt
 
-from agentface.conventions import check_duration
 from agentface.errors import InvalidValueError
 
 Samples: TypeAlias = npt.NDArray[np.int16]
 SLOWEST_RATE_HZ, FASTEST_RATE_HZ = 4_000, 192_000
-LONGEST_S = 600.0
+LONGEST_S = 3600.0
 """No sound is longer."""
+
+FADE_S = 0.02
+"""So long a sound fades out that is ended before its end: no click is heard."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,7 +63,35 @@ class Sound:
         """Seconds."""
         return len(self.samples) / self.rate_hz
 
-    def after(self, silence_s: float) -> Sound:
-        """The same with ``silence_s`` seconds of silence before it."""
-        count = round(check_duration("silence_s", silence_s) * self.rate_hz)
-        return Sound(np.concatenate([np.zeros(count, np.int16), self.samples]), self.rate_hz)
+    def at_rate(self, rate_hz: int) -> Sound:
+        """The same with so many samples a second."""
+        if rate_hz == self.rate_hz or not len(self.samples):
+            return Sound(self.samples, rate_hz)
+        from scipy.signal import resample_poly
+
+        common = gcd(rate_hz, self.rate_hz)
+        samples = resample_poly(self.samples.astype(np.float64), rate_hz // common, self.rate_hz // common)
+        return Sound(np.clip(np.round(samples), -32768, 32767).astype(np.int16), rate_hz)
+
+    def until(self, end_s: float) -> Sound:
+        """Its beginning, faded out within ``FADE_S`` before ``end_s`` seconds."""
+        end = round(max(end_s, 0.0) * self.rate_hz)
+        if end >= len(self.samples):
+            return self
+        samples = self.samples[:end].astype(np.float64)
+        count = min(round(FADE_S * self.rate_hz), end)
+        if count:
+            samples[end - count :] *= np.linspace(1.0, 0.0, count)
+        return Sound(samples.astype(np.int16), self.rate_hz)
+
+
+def mixed(parts: Iterable[tuple[float, Sound]], rate_hz: int) -> Sound:
+    """Sounds that begin at times in seconds, added up; what is later than ``LONGEST_S`` is left out."""
+    placed = [(round(start_s * rate_hz), sound.at_rate(rate_hz).samples) for start_s, sound in parts]
+    most = round(LONGEST_S * rate_hz)
+    total = np.zeros(min(max((start + len(samples) for start, samples in placed), default=0), most), np.int32)
+    for start, samples in placed:
+        begin, end = max(start, 0), min(start + len(samples), len(total))
+        if begin < end:
+            total[begin:end] += samples[begin - start : end - start]
+    return Sound(np.clip(total, -32768, 32767).astype(np.int16), rate_hz)

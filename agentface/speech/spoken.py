@@ -12,7 +12,7 @@ from agentface.speech.phones import Phone
 from agentface.speech.script import Line, Script
 from agentface.speech.sound import Sound
 from agentface.speech.tags import Tag
-from agentface.speech.voices.voice import Utterance, Voice
+from agentface.speech.voices.voice import Voice, Voiced
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,7 +32,7 @@ class Spoken:
     text: str = ""
 
     @classmethod
-    def of(cls, utterance: Utterance, line: Line | None = None) -> Spoken:
+    def of(cls, utterance: Voiced, line: Line | None = None) -> Spoken:
         """What an utterance is, whose marks are the tags of ``line``."""
         if line is None:
             return cls(utterance.sound, utterance.phones)

@@ -72,6 +72,14 @@ def test_sounds_begin_in_their_time_and_add_up(device):
     speaker.close()
 
 
+def test_a_sound_that_has_begun_is_heard_from_there_on(device):
+    ramp = Sound(np.arange(9600, dtype=np.int16), RATE)
+    with Loudspeaker() as speaker:
+        speaker.play(ramp, -0.1)
+        assert (device[0].heard(4800) == np.arange(4800, 9600)).all()
+        assert not device[0].heard(10).any()
+
+
 def test_any_rate_is_heard_as_it_is(device):
     tone = (10_000 * np.sin(2 * np.pi * 440 * np.arange(16_000) / 16_000)).astype(np.int16)
     with Loudspeaker() as speaker:

@@ -13,7 +13,7 @@ from agentface.errors import DataError, InvalidValueError, OutputError
 from agentface.io import sound as reading
 from agentface.io.sound import read_sound, write_wav
 from agentface.io.video import VideoWriter
-from agentface.speech.sound import Sound
+from agentface.speech.sound import Sound, mixed
 
 RATE = 16_000
 SIZE = (64, 48)
@@ -127,14 +127,35 @@ def test_what_is_no_sound_is_refused():
     for samples, rate in ((tone(1.0)[None], RATE), (tone(1.0).astype(float), RATE), (tone(1.0), 0), (tone(1.0), 16e3)):
         with pytest.raises(InvalidValueError, match="sound"):
             Sound(samples, rate)
-    with pytest.raises(InvalidValueError, match="600 s"):
-        Sound(np.zeros(601 * 4000, np.int16), 4000)
+    with pytest.raises(InvalidValueError, match="3600 s"):
+        Sound(np.zeros(3601 * 4000, np.int16), 4000)
     mutable = tone(0.1)
     sound = Sound(mutable, RATE)
     mutable[:] = 0
     assert np.abs(sound.samples).max() > 10_000
-    assert sound.after(0.25).duration_s == pytest.approx(0.35)
-    assert onset(sound.after(0.25).samples, RATE) == pytest.approx(0.25, abs=0.001)
+
+
+def test_sounds_are_mixed_in_their_time():
+    low, high = Sound(np.full(800, 1000, np.int16), 8000), Sound(np.full(1600, 30_000, np.int16), 16_000)
+    total = mixed([(0.05, low), (0.1, high), (-0.05, low)], 16_000)
+    assert total.duration_s == pytest.approx(0.2)
+    assert np.median(total.samples[900:1500]) == pytest.approx(1000, abs=2)
+    assert total.samples[1700] == pytest.approx(31_000, rel=0.05)
+    assert total.samples[300] == pytest.approx(1000, rel=0.05), "what begins before is heard from there on"
+    assert mixed([], RATE).duration_s == 0.0
+    assert mixed([(0.0, high)] * 3, RATE).samples.max() == 32767
+
+
+def test_a_sound_that_is_ended_fades():
+    sound = Sound(np.full(16_000, 10_000, np.int16), RATE)
+    cut = sound.until(0.5)
+    assert cut.duration_s == 0.5
+    assert (cut.samples[:7680] == 10_000).all()
+    assert np.abs(np.diff(cut.samples.astype(int))).max() < 100
+    assert cut.samples[-1] == 0
+    assert sound.until(2.0) is sound
+    assert sound.until(-1.0).duration_s == 0.0
+    assert pitch(Sound(tone(1.0), RATE).at_rate(48_000)) == pytest.approx(440.0, abs=1.0)
 
 
 def film(

@@ -11,7 +11,7 @@ from agentface.errors import AgentFaceError, InvalidValueError, SpeechError
 from agentface.speech.hearing import aligned, heard
 from agentface.speech.sound import Sound
 from agentface.speech.voices.flite import Flite
-from agentface.speech.voices.voice import SILENCE, Utterance
+from agentface.speech.voices.voice import SILENCE, Voiced
 from tests.tools import require
 
 TEXT = "The birch canoe slid on the smooth planks. Glue the sheet to the dark blue background."
@@ -42,18 +42,18 @@ def class_of(symbol: str) -> str:
     return next((name for name, members in groups.items() if symbol.lower() in members.split()), "other")
 
 
-def agreement(truth: Utterance, found: Utterance) -> float:
+def agreement(truth: Voiced, found: Voiced) -> float:
     """The share of speech, frame by frame, in which both have a sound of the same class."""
     times = np.arange(0.0, truth.sound.duration_s, 0.01) + 0.005
 
-    def at(utterance: Utterance, time: float) -> str:
+    def at(utterance: Voiced, time: float) -> str:
         return next((p.symbol for p in utterance.phones if p.start_s <= time < p.end_s), SILENCE)
 
     pairs = [(at(truth, time), at(found, time)) for time in times]
     return float(np.mean([class_of(a) == class_of(b) for a, b in pairs if a != SILENCE]))
 
 
-def gapless(found: Utterance) -> bool:
+def gapless(found: Voiced) -> bool:
     edges = [edge for phone in found.phones for edge in (phone.start_s, phone.end_s)]
     return edges[0] == 0.0 and edges[-1] == found.sound.duration_s and edges[1:-1:2] == edges[2:-1:2]
 

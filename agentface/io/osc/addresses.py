@@ -18,6 +18,7 @@ from agentface.requests import (
     LookAt,
     Neutral,
     Request,
+    Say,
     SetActionUnit,
     SetArkit,
     SetEmotion,
@@ -224,6 +225,11 @@ def _state(arguments: Sequence[Any]) -> Request:
     return SetState(*arguments or (None,))
 
 
+def _say(arguments: Sequence[Any]) -> Request:
+    _count(arguments, "text", 1, 1)
+    return Say(*arguments)
+
+
 def _blink(arguments: Sequence[Any]) -> Request | None:
     return Blink() if pressed(arguments) else None
 
@@ -268,6 +274,7 @@ _READERS: dict[str, Reader] = {
     "viseme": _viseme,
     "visemes": _visemes,
     "hush": _hush,
+    "say": _say,
     "blink": _blink,
     "gesture": _gesture,
     "liveliness": _liveliness,

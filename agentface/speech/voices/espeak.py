@@ -14,7 +14,7 @@ from agentface.speech.alphabets import phone_table
 from agentface.speech.phones import Phone
 from agentface.speech.sound import Sound
 from agentface.speech.voices.child import Child
-from agentface.speech.voices.voice import SILENCE, TOOL_S, Utterance, cannot_pronounce, check_speech_rate, word_start
+from agentface.speech.voices.voice import SILENCE, TOOL_S, Voiced, cannot_pronounce, check_speech_rate, word_start
 
 ESPEAK = "espeak"
 _SCRIPT = Path(__file__).with_name("espeak_child.py")
@@ -44,7 +44,7 @@ class Espeak:
         self.language, self._voice = codes[asked]
         self.name = f"{ESPEAK} ({self.language})"
 
-    def speak(self, sentence: str, rate: float = 1.0, marks: Sequence[int] = ()) -> Utterance:
+    def speak(self, sentence: str, rate: float = 1.0, marks: Sequence[int] = ()) -> Voiced:
         """Speak a sentence."""
         request = {"text": sentence, "voice": self._voice, "rate": check_speech_rate(rate)}
         answer, samples = self._asked(request)
@@ -60,7 +60,7 @@ class Espeak:
         end = next(phone.end_s for phone in reversed(phones) if phone.symbol != SILENCE)
         befores = [word_start(sentence, mark) for mark in marks]
         times = (next((at for place, at in words if place >= before), end) for before in befores)
-        return Utterance(sound, phones, tuple(min(at, end) for at in times))
+        return Voiced(sound, phones, tuple(min(at, end) for at in times))
 
     def close(self) -> None:
         """End the process."""

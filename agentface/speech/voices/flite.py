@@ -17,7 +17,7 @@ from agentface.errors import SpeechError, UnknownNameError
 from agentface.speech.phones import Phone
 from agentface.speech.sound import Sound
 from agentface.speech.voices.program import run_program
-from agentface.speech.voices.voice import SILENCE, TOOL_S, Utterance, cannot_pronounce, check_speech_rate, word_start
+from agentface.speech.voices.voice import SILENCE, TOOL_S, Voiced, cannot_pronounce, check_speech_rate, word_start
 
 FLITE_VOICES = ("slt", "rms", "awb", "kal16", "kal")
 _PAUSES = ("pau", "ssil", "h#")
@@ -45,7 +45,7 @@ class Flite:
         self.name = name
         self._program = _program()
 
-    def speak(self, sentence: str, rate: float = 1.0, marks: Sequence[int] = ()) -> Utterance:
+    def speak(self, sentence: str, rate: float = 1.0, marks: Sequence[int] = ()) -> Voiced:
         """Speak a sentence; letters that English does not have lose their accents."""
         stretch, end = 1.0 / check_speech_rate(rate), time.monotonic() + TOOL_S
         with tempfile.TemporaryDirectory(prefix="agentface-") as folder:
@@ -57,7 +57,7 @@ class Flite:
                 raise _garbage(f"phones until {phones[-1].end_s:g} s of {sound.duration_s:g} s of sound")
             befores = [sentence[: word_start(sentence, mark)] for mark in marks]
             times = tuple(self._mark(before, phones, Path(folder), end) for before in befores)
-        return Utterance(sound, phones, times)
+        return Voiced(sound, phones, times)
 
     def pronounce(self, word: str) -> tuple[str, ...]:
         """The phones of a word in ARPAbet; raises InvalidValueError for one that it cannot pronounce."""

@@ -1,4 +1,4 @@
-""":class:`Voice`, what speaks a sentence, and :class:`Utterance`, what comes of it."""
+""":class:`Voice`, what speaks a sentence, and :class:`Voiced`, what comes of it."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ SLOWEST, FASTEST = 0.5, 2.0
 
 
 @dataclass(frozen=True, slots=True)
-class Utterance:
+class Voiced:
     """A spoken sentence.
 
     Attributes:
@@ -37,7 +37,7 @@ class Voice(Protocol):
 
     name: str
 
-    def speak(self, sentence: str, rate: float = 1.0, marks: Sequence[int] = ()) -> Utterance:
+    def speak(self, sentence: str, rate: float = 1.0, marks: Sequence[int] = ()) -> Voiced:
         """Speak a sentence, which takes at most ``TOOL_S`` seconds.
 
         Args:

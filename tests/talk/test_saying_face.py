@@ -1,0 +1,129 @@
+from __future__ import annotations
+
+import gc
+import weakref
+
+import numpy as np
+import pytest
+
+from agentface import Face
+from agentface.live.notes import Replay
+from agentface.parameters import NAMES
+from agentface.requests import Hush, Say, SetEmotion, Speak
+from agentface.speech.voices.flite import Flite
+from tests.heads import head_model
+from tests.tools import require
+
+TEXT = "[joy] Papa saw. [surprise:0.5] A big map!"
+
+
+@pytest.fixture
+def face():
+    require("flite")
+    with Face(head_model(), compiled=False) as made:
+        yield made
+
+
+def motion(face, seconds, dt):
+    """The pose every so often, without a deformed skin."""
+    poses = []
+    for _ in range(round(seconds / dt)):
+        face._advance(dt)
+        face._touch()
+        poses.append(face.pose.array.copy())
+    return np.array(poses)
+
+
+def test_what_it_says_moves_its_mouth_at_once_and_for_as_long(face):
+    face.say("Papa saw a map.", wait=True)
+    spoken = Flite().speak("Papa saw a map.")
+    jaw = motion(face, spoken.sound.duration_s + 1.0, 0.01)[:, NAMES.index("jaw_open")]
+    open_ = [p for p in spoken.phones if p.symbol in ("aa", "ao", "ae")]
+    for phone in open_:
+        assert jaw[round(100 * phone.start_s) : round(100 * phone.end_s)].max() > 0.1
+    assert jaw[: round(100 * spoken.phones[0].end_s) - 10].max() < 0.3 * jaw.max()
+    assert jaw[-20:].max() < 0.01
+    assert face.channels.speech.status is None
+
+
+def test_the_same_text_gives_the_same_frames_at_any_rate(face):
+    twin = Face(head_model(), compiled=False)
+    again = Face(head_model(), compiled=False)
+    for one in (face, twin, again):
+        one.say(TEXT, wait=True)
+    first, second, fine = motion(face, 3.0, 1 / 30), motion(twin, 3.0, 1 / 30), motion(again, 3.0, 1 / 120)
+    assert (first == second).all()
+    assert np.abs(first - fine[3::4]).max() < 1e-3
+    for one in (twin, again):
+        one.close()
+
+
+def test_what_came_of_a_text_is_noted_and_gives_the_same_again(face):
+    noted, fps = [], 30.0
+    face.noted.append(noted.append)
+    face.say(TEXT, wait=True)
+    motion(face, 3.0, 1 / fps)
+    kinds = [type(request) for request in noted]
+    assert kinds[0] is Say
+    assert kinds.count(Speak) == 2
+    assert [(r.emotion, r.intensity) for r in noted if isinstance(r, SetEmotion)] == [
+        ("happiness", 0.7),
+        ("happiness", 0.0),
+        ("surprise", 0.5),
+        ("surprise", 0.0),
+    ]
+    other = Face(head_model(), compiled=False)
+    replay = Replay(other, [(0.0, request) for request in noted[:2]], fps)
+    replay.take_in(0.0)
+    assert other._talker is None, "nothing is spoken twice"
+    assert other.channels.speech.status is not None
+
+
+def test_hush_closes_the_mouth_and_drops_the_rest(face):
+    face.say("Father saw a large car. Father saw a large car.", wait=True)
+    motion(face, 0.6, 0.02)
+    face.hush()
+    jaw = motion(face, 4.0, 0.01)[:, NAMES.index("jaw_open")]
+    assert jaw[15:].max() < 0.01
+    assert face.talker.texts == ()
+
+
+def test_say_waits_for_speak_and_interrupts_it(face):
+    face.speak([("aa", 0.0, 1.0)])
+    face.say("Yes.", wait=True)
+    noted = []
+    face.noted.append(noted.append)
+    motion(face, 0.9, 0.1)
+    assert not noted
+    motion(face, 0.5, 0.1)
+    assert [type(request) for request in noted] == [Speak]
+    face.speak([("aa", 0.0, 5.0)], interrupt=True)
+    assert face.talker.texts == ()
+    face.say("No.", interrupt=True, wait=True)
+    motion(face, 0.1, 0.05)
+    assert face.channels.speech.status["ends_in_s"] < 2.0
+
+
+def test_a_face_that_is_dropped_or_closed_leaves_no_thread():
+    require("flite")
+    made = Face(head_model(), compiled=False)
+    made.say("Yes.", wait=True)
+    made.step(0.01)
+    watched = weakref.ref(made)
+    thread = made.talker._speaker._thread
+    assert thread.is_alive()
+    made.close()
+    made.close()
+    thread.join(10)
+    assert not thread.is_alive()
+    del made
+    gc.collect()
+    assert watched() is None
+
+
+def test_a_hush_before_anything_was_said_is_no_fault(face):
+    face.apply(Hush())
+    face.say("Yes.")
+    face.hush()
+    motion(face, 0.3, 0.05)
+    assert face.talker.texts == ()
