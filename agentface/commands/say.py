@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from agentface.face import Face
     from agentface.speech.spoken import Spoken
 
-_AFTER_S = 0.6
+_AFTER_S = 1.0
 """The film goes on for so long when all is said."""
 
 

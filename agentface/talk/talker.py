@@ -28,7 +28,7 @@ USUAL_LEVEL = 0.7
 LEAD_S = 0.3
 """So long before its turn a sentence is told to the mouth, which rounds early for what comes."""
 _SAME_S = 1e-9
-_RETURN_S = 1.0
+_RETURN_S = 0.8
 """What the face takes to let go of what the tags of a text asked for, when it is said."""
 
 
