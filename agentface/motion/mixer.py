@@ -128,7 +128,7 @@ class Mixer(MutableMapping[str, Channel]):
         self._pose = FacePose()
         self.emotion = self._own("emotion", EmotionChannel(rules, gains))
         table, head, blink = life or default_life(), TurnChannel("head"), BlinkChannel()
-        self.gaze = self._own("gaze", GazeChannel(head, table.look_at))
+        self.gaze = self._own("gaze", GazeChannel(head, table))
         self.head = self._own("head", head)
         self._live(table, random or np.random.default_rng(0), blink, all_gestures() if gestures is None else gestures)
         self.action_units = self._own("action_units", ActionUnitChannel())
