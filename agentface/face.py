@@ -212,11 +212,12 @@ class Face:
         """Look ``yaw_deg`` to the person's left (-50..50) and ``pitch_deg`` up (-40..40); a saccade by default."""
         self.apply(SetGaze(yaw_deg, pitch_deg, fade))
 
-    def look_at(self, point: Sequence[float], *, fade: float = GAZE_FADE_S) -> None:
+    def look_at(self, point: Sequence[float], *, fade: float | None = None) -> None:
         """Look at a point, each eye exactly: x, y, z in metres in the model's axes, where the head is not turned.
 
         It is looked at until the gaze is told otherwise, whatever turns the head; the head joins the eyes for what is
-        far aside. Raises InvalidValueError for a point that is not in front of the eyes.
+        far aside. The eyes take ``fade`` seconds, those of a leap so far when None. Raises InvalidValueError for a
+        point that is not in front of the eyes.
         """
         self.apply(LookAt.of(point, fade))
 

@@ -97,7 +97,7 @@ def test_it_records_a_film(tmp_path):
 def test_it_films_and_shows_a_look(tmp_path, monkeypatch):
     from PIL import Image
 
-    words = ("--osc", "127.0.0.1:0", "--look")
+    words = ("--osc", "127.0.0.1:0", "--liveliness", "0", "--look")
     filmed = ("--record", tmp_path / "face-%05d.png", "--duration", "0.1", "--fps", "10", "--size", "96x64")
     assert "'nobody'" in fail(*words, "nobody", *filmed)
     assert not list(tmp_path.iterdir())

@@ -18,8 +18,8 @@ from agentface.parameters import GROUPS, Way, parameter
 from agentface.resources import rules_file
 
 CHANNELS = (
-    *("emotion", "gaze", "head", "life", "gestures"),
-    *("action_units", "performance", "faps", "arkit", "speech", "blink", "muscles"),
+    *("emotion", "gaze", "head", "action_units", "performance", "faps", "arkit", "speech"),
+    *("life", "gestures", "blink", "muscles"),
 )
 """The face's own channels; a program adds others."""
 

@@ -9,7 +9,7 @@ from typing import Protocol
 from agentface.conventions import Doubles
 from agentface.motion.envelope import Envelope
 from agentface.motion.eyesight import Eyesight, Point
-from agentface.motion.figures import LookFigures
+from agentface.motion.figures import LifeTable
 from agentface.motion.turns import TurnChannel
 from agentface.parameters import parameter
 
@@ -41,21 +41,21 @@ class GazeChannel(TurnChannel):
 
     Args:
         head: the channel that turns the head when it is told to.
-        figures: of eyes and head together.
+        table: has the figures of eyes and head together, and of how long a leap of the eyes takes.
     """
 
-    def __init__(self, head: TurnChannel, figures: LookFigures) -> None:
+    def __init__(self, head: TurnChannel, table: LifeTable) -> None:
         super().__init__("gaze")
         self._eyes = self.names
         self.names = (*self._eyes, *_JOINED)
         self.movers: list[HeadMover] = []
-        self._head, self._figures = head, figures
+        self._head, self._figures, self._saccades = head, table.look_at, table.saccades
         self._sight: Eyesight | None = None
         self._point: Point | None = None
         limits = [parameter(name) for name in self._eyes]
         span = [known.high - known.low for known in limits]
         self._rest = Envelope(len(span), [-reach for reach in span], span)
-        reach = [math.radians(limit) for limit in figures.head_limit_deg]
+        reach = [math.radians(limit) for limit in self._figures.head_limit_deg]
         self._joined = Envelope(len(_JOINED), [-2.0 * limit for limit in reach], [2.0 * limit for limit in reach])
         self._reach = reach
         self._head_for: tuple[float, ...] = ()
@@ -84,14 +84,20 @@ class GazeChannel(TurnChannel):
         aims = self._sight.aim(self._point, yaw + float(joined[0]), pitch + float(joined[1]), roll)
         return dict(zip(self._eyes, aims, strict=True))
 
-    def look_at(self, sight: Eyesight, point: Point, fade: float) -> None:
-        """Look at a point in metres, in the axes of the head when it is not turned; with a fade of 0 at once."""
-        if point == self._point and fade > 0.0:
+    def look_at(self, sight: Eyesight, point: Point, fade: float | None = None) -> None:
+        """Look at a point in metres, in the axes of the head when it is not turned.
+
+        The eyes take ``fade`` seconds, those of a leap so far when None; with 0, eyes and head are there at once.
+        """
+        if point == self._point and fade != 0.0:
             return
         shown, speed = self._shown(), self._speed()
         self._sight, self._point = sight, point
-        if math.dist(shown[:2], self._aim()[:2]) > _ELSEWHERE:
+        way = math.dist(shown[:2], self._aim()[:2])
+        if way > _ELSEWHERE:
             self.looks += 1
+        if fade is None:
+            fade = self._saccades.shortest_s + self._saccades.per_degree_s * math.degrees(way)
         self._join(at_once=fade == 0.0)
         if fade == 0.0:
             self._rest.move(0.0, 0.0)

@@ -94,8 +94,8 @@ def _compact(places: list[int]) -> slice | npt.NDArray[np.intp]:
 class Mixer(MutableMapping[str, Channel]):
     """Channels by name; each is blended over those of lower priority, by the ways and priorities of its rank.
 
-    The face's own are ``emotion``, ``gaze``, ``head``, ``life``, ``gestures``, ``action_units``, ``performance``,
-    ``faps``, ``speech``, ``blink`` and ``muscles``, also to be had as attributes; they stay. A program adds others,
+    The face's own are ``emotion``, ``gaze``, ``head``, ``action_units``, ``performance``, ``faps``, ``speech``,
+    ``life``, ``gestures``, ``blink`` and ``muscles``, also to be had as attributes; they stay. A program adds others,
     ``mixer["breath"] = channel`` or :meth:`add`, and deletes them again; a face shows it from its next step on.
 
     Args:
@@ -128,13 +128,13 @@ class Mixer(MutableMapping[str, Channel]):
         self._pose = FacePose()
         self.emotion = self._own("emotion", EmotionChannel(rules, gains))
         table, head, blink = life or default_life(), TurnChannel("head"), BlinkChannel()
-        self.gaze = self._own("gaze", GazeChannel(head, table.look_at))
+        self.gaze = self._own("gaze", GazeChannel(head, table))
         self.head = self._own("head", head)
-        self._live(table, random or np.random.default_rng(0), blink, all_gestures() if gestures is None else gestures)
         self.action_units = self._own("action_units", ActionUnitChannel())
         self.performance = self._own("performance", PerformanceChannel())
         self.faps = self._own("faps", FapChannel())
         self.speech = self._own("speech", SpeechChannel(compiled=compiled, yields=self._conflicts.yields))
+        self._live(table, random or np.random.default_rng(0), blink, all_gestures() if gestures is None else gestures)
         self.blink = self._own("blink", blink)
         self.muscles = self._own("muscles", MuscleChannel())
         self._fixed = frozenset(self._layers)

@@ -48,7 +48,8 @@ class LookAt(Request):
 
     Attributes:
         x, y, z: metres in the model's axes, where the head is not turned: to the person's left, up, forward.
-        fade: what the eyes take, in seconds; the head takes its own time, but with 0 both are there at once.
+        fade: what the eyes take, in seconds, those of a leap so far when None; the head takes its own time. With 0
+            both are there at once.
 
     The eyes stay on the point while the head turns. If it is too far aside for the eyes, the head joins them; beyond
     both ranges they go as far as they can. Which points are in front of the eyes is the face's to
@@ -58,14 +59,14 @@ class LookAt(Request):
     x: float
     y: float
     z: float
-    fade: float = GAZE_FADE_S
+    fade: float | None = None
 
     def __post_init__(self) -> None:
         axes = {axis: check_finite(f"point {axis}", getattr(self, axis)) for axis in ("x", "y", "z")}
-        self._keep(**axes, fade=check_duration("fade", self.fade))
+        self._keep(**axes, fade=None if self.fade is None else check_duration("fade", self.fade))
 
     @classmethod
-    def of(cls, point: Sequence[float], fade: float = GAZE_FADE_S) -> LookAt:
+    def of(cls, point: Sequence[float], fade: float | None = None) -> LookAt:
         """The request for a point of three coordinates; raises InvalidValueError for anything else."""
         try:
             x, y, z = point

@@ -41,9 +41,9 @@ class Track:
         secants = np.diff(values) / steps
         before, after = secants[:-1], secants[1:]
         first, second = 2.0 * steps[1:] + steps[:-1], steps[1:] + 2.0 * steps[:-1]
-        with np.errstate(divide="ignore", invalid="ignore"):
-            mean = (first + second) / (first / before + second / after)
-        slopes[1:-1] = np.where(before * after > 0.0, mean, 0.0)
+        onward = before * after > 0.0
+        mean = (first + second) * before * after / np.where(onward, first * after + second * before, 1.0)
+        slopes[1:-1] = np.where(onward, mean, 0.0)
         return cls(name, *(tuple(part.tolist()) for part in (times_s, values, slopes)))
 
     def at(self, time_s: float) -> float:
