@@ -261,7 +261,7 @@ def test_200_kb_of_garbage_is_counted_and_answered(desk, seed):
         "/other/emotion",
         "/agentface",
         "/agentface/",
-        "/agentface/viseme",
+        "/agentface/visage",
         "/agentface/onyx/emotion",
         "/*",
         "/*/*/*/*",
