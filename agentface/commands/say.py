@@ -17,6 +17,7 @@ from agentface.commands.options import (
     face_options,
     given,
     live_quality_option,
+    liveliness_option,
     look_option,
     make_face,
     size_option,
@@ -56,6 +57,7 @@ _AFTER_S = 1.0
 @click.option(
     "--fps", type=click.FloatRange(1, 240), default=30.0, show_default=True, help="Frames a second of a film."
 )
+@liveliness_option
 @look_option
 @size_option
 @live_quality_option
@@ -74,6 +76,7 @@ def say(
     emotions: dict[str, float],
     output: Path | None,
     fps: float,
+    liveliness: float,
     look: str | None,
     size: tuple[int, int],
     quality: str | None,
@@ -99,11 +102,11 @@ def say(
     recorded = _recorded(text, audio, phones)
     if output is not None:
         spoken = recorded or _voiced(text or "", voice, language, rate)
-        shown = _made(face, deformer, look, emotions)
+        shown = _made(face, deformer, look, emotions, liveliness)
         with until_told() as ending:
             _film(shown, spoken, Shot(output, size, camera, quality or "fast", fps, look), ending)
         return
-    shown = _made(face, deformer, look, emotions)
+    shown = _made(face, deformer, look, emotions, liveliness)
     with until_told() as ending:
         if recorded is not None:
             shown.talker.perform(recorded)
@@ -159,8 +162,8 @@ def _voiced(text: str, voice: str | None, language: str, rate: float) -> Spoken:
         return speak_script(speaker, script_of(text), rate)
 
 
-def _made(face: str, deformer: str, look: str | None, emotions: dict[str, float]) -> Face:
-    made = make_face(face, deformer, look=look, running=True)
+def _made(face: str, deformer: str, look: str | None, emotions: dict[str, float], liveliness: float) -> Face:
+    made = make_face(face, deformer, look=look, running=True, liveliness=liveliness)
     if emotions:
         made.set_emotion(emotions, fade=0.0)
     return made

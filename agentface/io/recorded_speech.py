@@ -20,14 +20,14 @@ from agentface.speech.phones import Phone, phones_of
 from agentface.speech.spoken import Spoken
 from agentface.speech.voices.flite import Flite
 
-FORMAT = "agentface-phones"
+FORMAT = "agentface phones"
 _HEAD = 200
 
 
 class RecordedSpeechFile(Table):
     """The times of a recording's phones."""
 
-    format: Literal["agentface-phones"]
+    format: Literal["agentface phones"]
     version: Literal[1]
     sound: str
     text: str = ""
