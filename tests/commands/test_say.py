@@ -217,8 +217,7 @@ def test_the_sound_of_a_performance_is_in_its_film(tmp_path):
 @pytest.mark.slow
 @pytest.mark.gl
 def test_a_server_films_what_it_says_with_its_sound(tmp_path, jaws):
-    from pythonosc.osc_message_builder import OscMessageBuilder
-
+    from agentface.io.osc.codec import encode
     from agentface.io.osc.server import OscServer
 
     port, opened = [], OscServer.__init__
@@ -230,10 +229,9 @@ def test_a_server_films_what_it_says_with_its_sound(tmp_path, jaws):
     def talk():
         while not port or not jaws:
             time.sleep(0.05)
-        message = OscMessageBuilder("/agentface/say")
-        message.add_arg_value("Father saw a large car.")
+        message = encode("/agentface/say", "Father saw a large car.")
         with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as client:
-            client.sendto(message.build().dgram, ("127.0.0.1", port[0]))
+            client.sendto(message, ("127.0.0.1", port[0]))
 
     threading.Thread(target=talk, daemon=True).start()
     with pytest.MonkeyPatch.context() as patched:
