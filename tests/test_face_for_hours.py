@@ -1,4 +1,4 @@
-"""A face that runs for hours: what it shows stays finite and smooth, and it keeps no memory."""
+"""A face that runs and lives for hours: what it shows stays finite and smooth, and it keeps no memory."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ import pytest
 
 from agentface import EMOTIONS, Face
 from agentface.head.regions import REGIONS, REST
+from agentface.motion.figures import STATES
 from agentface.parameters import MUSCLES
 from tests.heads import head_model
 
@@ -24,7 +25,7 @@ pytestmark = pytest.mark.soak
 def disturb(face: Face, draw: np.random.Generator) -> None:
     """One random thing that a program may ask for."""
     fade = float(draw.choice([0.1, 0.25, 1.0]))
-    match draw.integers(8):
+    match draw.integers(11):
         case 0 | 1:
             face.set_emotion(str(draw.choice(EMOTIONS)), float(draw.random()), fade=fade)
         case 2:
@@ -39,6 +40,14 @@ def disturb(face: Face, draw: np.random.Generator) -> None:
             face.neutral(fade)
         case 7:
             face.blink()
+        case 8:
+            face.look_at([*draw.uniform(-0.6, 0.6, 2), 0.6])
+        case 9:
+            face.gesture(str(draw.choice(list(face.channels.gestures.gestures))), float(draw.random()))
+        case 10:
+            face.set_state(str(draw.choice(STATES)))
+            face.channels.life.beat(float(draw.random()), 0.1)
+            face.channels.life.sentence_ends(0.2)
 
 
 def peak_bytes() -> int:
@@ -46,7 +55,7 @@ def peak_bytes() -> int:
 
 
 def test_two_hours_of_random_calls():
-    face, draw = Face(head_model()), np.random.default_rng(7)
+    face, draw = Face(head_model(), liveliness=0.6), np.random.default_rng(7)
     inside = face.model.regions.region_of < REGIONS.index(REST)
     before = face.step(0.0).vertices[inside]
     first_minute = 0
