@@ -47,7 +47,7 @@ def test_moods(tmp_path):
 
 
 def test_make_demo_films_an_agent_in_another_process(tmp_path):
-    said = run("make_demo.py", "--out", tmp_path, "--pace", 12)
+    said = run("make_demo.py", "--out", tmp_path, "--pace", 12, "--mute")
     assert size_of(tmp_path / "expressions.png") == (1920, 1072)
     times = frames(tmp_path / "demo.mp4")
     assert times == sorted(set(times))
@@ -59,27 +59,55 @@ def test_make_demo_films_an_agent_in_another_process(tmp_path):
 
 def test_the_agent_tells_what_the_face_says_in_the_end():
     """A face that is slow to start answers all that it was asked meanwhile, and the agent asks once a half second."""
-    agent = ["osc_agent.py", "--wait", 20, "--pace", 50, "--osc"]
+    taken, said = told_to_a_face("--mute", refused="/agentface/emotions", slow=3)
+    assert [address for address, _ in taken].count("/agentface/status") == 4
+    assert len(taken) == 12
+    assert "the face took 8 messages" in said
+    assert said.count("the face says: /agentface/emotions no really") == 7
+
+
+def test_the_agent_says_what_it_feels_one_sentence_after_the_other():
+    taken, said = told_to_a_face()
+    told = [(address, arguments) for address, arguments in taken if address != "/agentface/status"]
+    assert [address for address, _ in told] == ["/agentface/emotions", "/agentface/say"] * 7 + ["/agentface/neutral"]
+    assert told[1][1] == ["Oh! It is you!"]
+    assert "the face took 15 messages" in said
+
+
+def test_without_a_voice_the_agent_lets_the_mouth_say_a_recording():
+    taken, _ = told_to_a_face("--phones", EXAMPLES / "hello.json")
+    known = dict(taken)
+    assert "/agentface/say" not in known
+    phones = json.loads((EXAMPLES / "hello.json").read_text())["phones"]
+    assert known["/agentface/visemes"][::3] == [symbol for symbol, _, _ in phones]
+    assert known["/agentface/visemes"][2::3] == pytest.approx([end for _, _, end in phones])
+
+
+def told_to_a_face(*arguments: object, refused: str = "", slow: int = 1) -> tuple[list[tuple[str, list]], str]:
+    """What the agent tells a face, and what it prints; the face speaks for two questions after it is told to."""
+    agent = ["osc_agent.py", "--wait", 20, "--pace", 50, *arguments, "--osc"]
+    taken: list[tuple[str, list]] = []
+    speaks = 0
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as face, ThreadPoolExecutor() as pool:
         face.bind(("127.0.0.1", 0))
         face.settimeout(60)
         said = pool.submit(run, *agent, f"127.0.0.1:{face.getsockname()[1]}")
-        waiting = [face.recvfrom(1024) for _ in range(3)]
-        taken = asked = 0
+        waiting = [face.recvfrom(8192) for _ in range(slow)]
         while not said.done():
             for datagram, sender in waiting:
                 message = OscMessage(datagram)
+                taken.append((message.address, list(message.params)))
                 if message.address == "/agentface/status":
-                    asked += 1
-                    face.sendto(answer("/agentface/status", json.dumps({"messages": taken, "errors": {}})), sender)
-                else:
-                    taken += 1
+                    count = sum(address != "/agentface/status" for address, _ in taken)
+                    speech, speaks = {"phone": "aa"} if speaks else None, max(0, speaks - 1)
+                    status = {"messages": count, "errors": {}, "speech": speech}
+                    face.sendto(answer("/agentface/status", json.dumps(status)), sender)
+                elif message.address == "/agentface/say":
+                    speaks = 2
+                elif message.address == refused:
                     face.sendto(answer("/agentface/error", message.address, "no", "really"), sender)
-            waiting = [face.recvfrom(1024)] if select.select([face], [], [], 0.1)[0] else []
-    assert asked == 4
-    assert taken == 8
-    assert "the face took 8 messages" in said.result()
-    assert said.result().count("the face says: /agentface/emotions no really") == 7
+            waiting = [face.recvfrom(8192)] if select.select([face], [], [], 0.1)[0] else []
+    return taken, said.result()
 
 
 def answer(address: str, *arguments: str) -> bytes:
