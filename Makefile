@@ -18,12 +18,12 @@ TOOLS := xvfb-run:xvfb xauth:xauth xdotool:xdotool xprop:x11-utils oscsend:liblo
 LIBRARIES := libespeak-ng.so.1:libespeak-ng1
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test lint quick soak matrix docs build clean opengl tools warm
+.PHONY: help demo test lint quick soak matrix docs build clean opengl voice tools warm
 
 help: ## this list
 	@sed -n 's/^\([a-z]*\):.*## /make \1\t/p' $(MAKEFILE_LIST) | expand -t 14
 
-demo: $(INSTALLED) opengl ## draw out/expressions.png, film out/demo.mp4 with an agent that talks OSC
+demo: $(INSTALLED) opengl voice ## draw out/expressions.png, film out/demo.mp4 with an agent that talks OSC
 	@$(BIN)/python examples/make_demo.py --out out
 	@printf '\nThese commands are in %s.\n' $(BIN)
 
@@ -46,6 +46,10 @@ test: $(INSTALLED) opengl tools lint warm ## ruff, mypy, all tests but the soaki
 	@# a child whose disk was full, which is what some tests are about, has left a file that cannot be read
 	@$(BIN)/coverage combine --quiet 2>/dev/null && rm -f $(COVERED).*
 	@$(BIN)/coverage report
+
+# who is not root goes without: the demo then says a recording
+voice:
+	@command -v flite >/dev/null || [ "$$(id -u)" != 0 ] || { $(call debian,flite); } || true
 
 # every worker would compile the same kernels, and while it is traced
 warm: $(INSTALLED)
