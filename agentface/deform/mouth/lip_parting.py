@@ -51,7 +51,7 @@ def seal(tables: ContactTables, level: float, apart: np.float32, points: Floats)
             of_way = SEALED_ABOVE if sign > 0.0 else np.float32(1.0) - SEALED_ABOVE
             gap = gaps(tables, own, other, sign, points)
             gap[[0, -1]] = 0.0
-            move[own[1:-1]] = np.float32(-sign) * of_way * share * _even(gap)
+            move[own[1:-1]] = np.float32(-sign) * of_way * share * np.maximum(_even(gap), gap[1:-1])
         points[tables.grid, 1] += tables.fall[:, None] * move
         part(tables, points, apart)
 

@@ -93,7 +93,7 @@ def seal(tables: ContactTables, level: np.float32, apart: np.float32, points: Fl
             gap[0], gap[own.shape[0] - 1] = _ZERO, _ZERO
             for k in range(1, own.shape[0] - 1):
                 even = _HALF * gap[k] + _QUARTER * (gap[k - 1] + gap[k + 1])
-                move[own[k]] = -sign * of_way * share * even
+                move[own[k]] = -sign * of_way * share * max(even, gap[k])
         _move(tables, move, points)
         part(tables, points, apart)
 
