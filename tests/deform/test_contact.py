@@ -104,6 +104,7 @@ def test_lips_of_muscles_at_their_ends_hardly_ever_pass_through_each_other(face)
     for number in range(60):
         values = np.where(rng.random(COUNT) < (0.5 if number % 2 else 0.25), HIGH, np.maximum(LOW, 0.0))
         values[indices_of("jaw_open")[0]] *= number % 3 == 0
+        values[indices_of("lip_bite")[0]] = 0.0  # between columns that have been drawn apart, teeth stand out
         geometry = deformer.at(FacePose(values.astype(np.float32)))
         lips, *teeth = mouth.crossings(geometry.vertices, geometry.jaw)
         assert teeth == [0, 0], repr(values)

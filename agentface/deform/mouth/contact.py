@@ -27,7 +27,7 @@ _NEAREST = 0.0004  # m, vertices that lie nearer to the teeth at rest, or behind
 _BITTEN = 0.019  # m from the middle, where a lower lip that is bitten lies as ever
 ROUNDS = 5
 """How often pressed lips are drawn together and parted: each round leaves less of the gap."""
-TOUCH = np.float32(0.00005)
+TOUCH = np.float32(0.00002)
 """m, that a bitten lip keeps from the crowns."""
 PARTINGS = 3
 """How often lips are parted after the teeth have pushed them: each time takes what the last one left."""

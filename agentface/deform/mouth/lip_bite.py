@@ -11,11 +11,11 @@ ABOVE = np.float32(0.001)
 """m above the incisors' edges, to which the lower lip's rim goes."""
 CLEAR = np.float32(0.0005)
 """m above that, to which the upper lip gives way."""
-BEYOND = np.float32(0.0015)
+BEYOND = np.float32(0.002)
 """m into the crowns, to which the lip would go: that is as soft as the teeth push, which then lay it against them."""
 REACH = np.float32(0.009)
 """m, how far the lip goes up or down at most; farther off, it goes back by less, too."""
-BACK = np.float32(0.011)
+BACK = np.float32(0.0115)
 """m, how far the lip goes back at most: farther, and the skin below it would turn over."""
 OUT_OF_REACH = np.float32(5.0)
 """How much farther from the teeth a ring counts for each m that it lies below their edges."""

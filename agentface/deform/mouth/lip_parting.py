@@ -30,7 +30,7 @@ def close(tables: ContactTables, press: float, points: Floats) -> None:
         return
     move = np.zeros(tables.grid.shape[1], np.float32)
     for own, other, sign in _lips(tables):
-        gap = _gaps(tables, own, other, sign, points)
+        gap = gaps(tables, own, other, sign, points)
         near = np.clip(np.float32(2.0) - gap / FARTHEST, np.float32(0.0), np.float32(1.0))
         near *= gap
         near[[0, 1, -2, -1]] = 0.0
@@ -49,9 +49,9 @@ def seal(tables: ContactTables, level: float, apart: np.float32, points: Floats)
         move = np.zeros(tables.grid.shape[1], np.float32)
         for own, other, sign in _lips(tables):
             of_way = SEALED_ABOVE if sign > 0.0 else np.float32(1.0) - SEALED_ABOVE
-            gap = _gaps(tables, own, other, sign, points)
+            gap = gaps(tables, own, other, sign, points)
             gap[[0, -1]] = 0.0
-            move[own[1:-1]] = np.float32(-sign) * of_way * share * _even(gap)
+            move[own[1:-1]] = np.float32(-sign) * of_way * share * np.maximum(_even(gap), gap[1:-1])
         points[tables.grid, 1] += tables.fall[:, None] * move
         part(tables, points, apart)
 
@@ -113,7 +113,7 @@ def _rings(tables: ContactTables) -> Indices:
     return tables.grid[tables.first : tables.last + 1]
 
 
-def _gaps(tables: ContactTables, own: Indices, other: Indices, sign: float, points: Floats) -> Floats:
+def gaps(tables: ContactTables, own: Indices, other: Indices, sign: float, points: Floats) -> Floats:
     """``(K,)`` m: between each of ``own`` columns and the other lip, where they are nearest; none is negative."""
     return np.maximum(-overlaps(_rings(tables), own, other, sign, points)[0].max((0, 1)), np.float32(0.0))
 

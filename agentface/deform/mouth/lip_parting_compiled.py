@@ -36,7 +36,7 @@ def close(tables: ContactTables, press: np.float32, points: Floats) -> None:
     for lip in range(2):
         own, other = (tables.upper, tables.lower) if lip == 0 else (tables.lower, tables.upper)
         sign = _ONE if lip == 0 else -_ONE
-        gap = _gaps(tables, own, other, sign, points)
+        gap = gaps(tables, own, other, sign, points)
         near = np.zeros(own.shape[0], np.float32)
         for k in range(2, own.shape[0] - 2):
             near[k] = min(_ONE, max(_ZERO, _TWO - gap[k] / FARTHEST)) * gap[k]
@@ -47,7 +47,7 @@ def close(tables: ContactTables, press: np.float32, points: Floats) -> None:
 
 
 @kernel(error_model="numpy")
-def _gaps(tables: ContactTables, own: Indices, other: Indices, sign: np.float32, points: Floats) -> Floats:
+def gaps(tables: ContactTables, own: Indices, other: Indices, sign: np.float32, points: Floats) -> Floats:
     """``(K,)`` m: between each of ``own`` columns and the other lip, where they are nearest; none is negative."""
     places, heights = _rings(tables, own, points)
     across, up = _rings(tables, other, points)
@@ -89,11 +89,11 @@ def seal(tables: ContactTables, level: np.float32, apart: np.float32, points: Fl
             own, other = (tables.upper, tables.lower) if lip == 0 else (tables.lower, tables.upper)
             sign = _ONE if lip == 0 else -_ONE
             of_way = SEALED_ABOVE if lip == 0 else _ONE - SEALED_ABOVE
-            gap = _gaps(tables, own, other, sign, points)
+            gap = gaps(tables, own, other, sign, points)
             gap[0], gap[own.shape[0] - 1] = _ZERO, _ZERO
             for k in range(1, own.shape[0] - 1):
                 even = _HALF * gap[k] + _QUARTER * (gap[k - 1] + gap[k + 1])
-                move[own[k]] = -sign * of_way * share * even
+                move[own[k]] = -sign * of_way * share * max(even, gap[k])
         _move(tables, move, points)
         part(tables, points, apart)
 
