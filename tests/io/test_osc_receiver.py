@@ -92,6 +92,24 @@ def test_muscle_gaze_head_blink_and_whole_numbers(desk):
     assert desk.face.message_counts.messages == 5
 
 
+def test_the_mouth_is_driven_by_visemes(desk):
+    desk.take(message("/agentface/viseme", "sf", "aa", 1.0), message("/agentface/viseme", "sff", "PP", 1.0, 0.5))
+    desk.face.step(1.0)
+    opened = desk.face.pose["jaw_open"]
+    assert opened > 0.1
+    desk.take(message("/agentface/hush"))
+    desk.face.step(0.2)
+    assert desk.face.pose["jaw_open"] == 0.0
+    desk.take(message("/agentface/visemes", "sffsff", "p", 0.0, 0.1, "AA1", 0.1, 0.4))
+    desk.face.step(0.2)
+    assert desk.face.status()["speech"] == {"phone": "AA1", "ends_in_s": 0.2, "waiting": 0}
+    desk.take(message("/agentface/visemes", "sff", "iy", 0.1, 0.6))
+    assert desk.face.status()["speech"]["ends_in_s"] == pytest.approx(0.6, abs=1e-3)
+    desk.take(message("/agentface/hush"))
+    assert desk.face.status()["speech"] is None
+    assert not desk.answers
+
+
 def test_parameters_and_points_reach_what_is_no_muscle(desk):
     desk.take(
         message("/agentface/parameter", "sf", "head_roll", 0.25),
@@ -211,6 +229,15 @@ def test_neutral_takes_its_fade(desk):
         (message("/agentface/gaze", "ff", 80, 0), "-50..50"),
         (message("/agentface/gaze", "f", 80), "yaw_deg"),
         (message("/agentface/head", "ff", 1, 2), "roll"),
+        (message("/agentface/viseme", "sf", "aaa", 1), "viseme"),
+        (message("/agentface/viseme", "sf", "aa", 2), "0..1"),
+        (message("/agentface/viseme", "s", "aa"), "name weight"),
+        (message("/agentface/visemes"), "triples"),
+        (message("/agentface/visemes", "sf", "aa", 0), "triples"),
+        (message("/agentface/visemes", "sff", "xyzzy", 0, 1), "xyzzy"),
+        (message("/agentface/visemes", "sff", "aa", 1, 0), "before its start"),
+        (message("/agentface/visemes", "sff", "aa", 0, math.inf), "finite"),
+        (message("/agentface/hush", "s", "now"), "no arguments"),
         (message("/agentface/blink", "ff", 1, 1), "no arguments"),
         (message("/agentface/blink", "f", math.nan), "no arguments"),
         (message("/agentface/blink", "s", "now"), "no arguments"),
