@@ -31,6 +31,8 @@ GRACE_S = 0.3
 """So long a live utterance waits for more before it is over."""
 _TAIL_S = 2.5
 """So long after its end an utterance may still be seen."""
+_FURTHEST = 16.0
+"""No number of a sample is farther from that of another."""
 _NEAR_S = 1e-3
 """Over so long a speed is measured."""
 
@@ -59,7 +61,7 @@ class SpeechChannel:
         self._waiting: deque[Utterance] = deque()
         self._hushed = math.inf
         size = self.articulation.size
-        self._rest = Envelope(size, -2.0, 2.0)
+        self._rest = Envelope(size, -_FURTHEST, _FURTHEST)
         self._sample, self._ahead = np.zeros(size), np.zeros(size)
         self._scratch = np.zeros(len(self.articulation.articulators))
         self._visemes = Envelope(len(self.articulation.visemes))
@@ -150,8 +152,9 @@ class SpeechChannel:
         sample += self._rest.value
         if not self._visemes.resting:
             sample += (1.0 - min(max(sample[-1], 0.0), 1.0)) * self._mixed()
+        tight = max(sample[-2], 0.0)
         np.clip(sample, -1.0, 1.0, out=sample)
-        np.maximum(sample[-2:], 0.0, out=sample[-2:])
+        sample[-2], sample[-1] = tight, max(sample[-1], 0.0)
         self._yielding.write(sample, values, weights)
         return True
 

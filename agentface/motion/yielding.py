@@ -6,6 +6,8 @@ Everywhere ``what is shown = value of speech + keep * what is felt``; as a chann
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
 from agentface.conventions import Doubles
@@ -45,7 +47,7 @@ class Yielding:
         rounding = 1.0 - np.prod(1.0 - np.maximum(said[self._rounds], 0.0))
         closure = 1.0 - np.prod(1.0 - np.maximum(said[self._closes], 0.0))
         offset[: self._said] = said
-        widest = 1.0 / tight - 1.0 if tight > 0.0 else np.inf
+        widest = 1.0 / math.expm1(tight) if tight > 0.0 else math.inf
         offset[self._jaw] = _smaller(offset[self._jaw], widest)
         np.abs(offset, out=keep)
         np.subtract(1.0, keep, out=keep)

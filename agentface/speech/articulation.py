@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from functools import cache
 from typing import NamedTuple
 
@@ -20,14 +21,12 @@ class Ramps(NamedTuple):
 
     Attributes:
         articulator: ``(P - C,)`` int32, which articulator moves each parameter.
-        contacts: ``(C, 2)`` s, over so long each comes and goes.
         jaw_s: s, over so long a limit of the jaw does.
         speaking: ``(2,)`` s, over so long speaking does.
         round_s: s, how round the tip of a dominance is.
     """
 
     articulator: Indices
-    contacts: Doubles
     jaw_s: float
     speaking: Doubles
     round_s: float
@@ -41,8 +40,8 @@ class Timeline(NamedTuple):
         middles: ``(S, 2)``, the middle, and how far on either side the middle part goes.
         targets: ``(S, P)``, what each parameter would be if nothing stood beside it.
         dominance: ``(S, A, 3)``: strength, and speed before and after, 1/s.
-        held: ``(S, C, 2)``, from when to when a contact is whole.
-        tight: ``(S,)`` 0..1, how the jaw is held: at ``1 / (1 + x)`` it opens no farther than x.
+        held: ``(S, C, 4)``, from when to when a contact is whole, and over how long it comes and goes.
+        tight: ``(S,)``, how tightly the jaw is held: at ``log(1 + 1 / x)`` it opens no farther than x.
         kept: ``(S, 2)``, from when to when.
         said: ``(S,)`` 0 or 1, whether it is anything but silence.
     """
@@ -76,10 +75,8 @@ class Articulation:
         self.contacts = tuple(self.rules.contacts)
         self.names = (*(name for name, _ in moved), *self.contacts)
         self.jaw = self.names.index(JAW)
-        rows = self.rules.contacts.values()
         self.ramps = Ramps(
             np.array([row for _, row in moved], np.int32),
-            np.array([(row.before_s, row.after_s) for row in rows]).reshape(-1, 2),
             self.rules.jaw_ramp_s,
             np.array([self.rules.speaking.before_s, self.rules.speaking.after_s]),
             self.rules.round_s,
@@ -93,7 +90,7 @@ class Articulation:
 
     @property
     def size(self) -> int:
-        """How many numbers a sample has: P parameters, how the jaw is held, and how much is spoken."""
+        """How many numbers a sample has: P parameters, how tightly the jaw is held, and how much is spoken."""
         return len(self.names) + 2
 
     def target(self, part: Part) -> Doubles:
@@ -112,9 +109,9 @@ class Articulation:
         return self._table[part.visemes[0][0]].early_s
 
     def tight(self, part: Part) -> float:
-        """How the jaw is held, 0 for not at all: at ``1 / (1 + x)`` it opens no farther than x."""
+        """How tightly the jaw is held, 0 for not at all: at ``log(1 + 1 / x)`` it opens no farther than x."""
         most = self._table[part.visemes[0][0]].jaw_most
-        return 0.0 if most >= 1.0 else 1.0 / (1.0 + most)
+        return 0.0 if most >= 1.0 else math.log1p(1.0 / most)
 
 
 @cache

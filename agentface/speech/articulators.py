@@ -27,6 +27,7 @@ class RateRow(Table):
     jaw_power: Annotated[float, Field(ge=-2, le=2)]
     jaw_least: _Factor
     jaw_most: _Factor
+    contact_power: Annotated[float, Field(ge=-2, le=0)]
 
 
 class ContactRow(Table):

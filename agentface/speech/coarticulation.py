@@ -4,8 +4,8 @@ Every articulator goes through ``sum(D T) / sum(D)`` over the segments near by, 
 ``D = strength exp(-speed (sqrt(d^2 + e^2) - e))`` at a distance d from the segment's middle part (Cohen and Massaro,
 Modeling coarticulation in synthetic visual speech, 1993; the rounding e leaves no corner in the speed).
 
-Contacts, the limit of the jaw and speaking are 1 for a while and come and go by half a cosine; where several overlap,
-they are together ``1 - prod(1 - x)``, which has no corner either.
+Contacts, the hold on the jaw and speaking are whole for a while and come and go by half a cosine. Where several
+overlap, contacts and speaking are together ``1 - prod(1 - x)``, which has no corner either, and the holds their sum.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ REACH_S = 2.0
 
 
 def sample(timeline: Timeline, ramps: Ramps, time: float, out: Doubles) -> None:
-    """Write ``out (P + 2,)``: the parameters, how the jaw is held, and 0..1 speaking."""
+    """Write ``out (P + 2,)``: the parameters, how tightly the jaw is held, and 0..1 speaking."""
     near = (timeline.spans[:, 1] > time - REACH_S) & (timeline.spans[:, 0] < time + REACH_S)
     count, moved = out.shape[0] - 2, ramps.articulator.shape[0]
     out[:] = 0.0
@@ -30,10 +30,10 @@ def sample(timeline: Timeline, ramps: Ramps, time: float, out: Doubles) -> None:
     shares = weights[:, ramps.articulator]
     sums = shares.sum(axis=0)
     out[:moved] = (shares * timeline.targets[near, :moved]).sum(axis=0) / np.maximum(sums, 1e-30)
-    levels = _bump(time, timeline.held[near], ramps.contacts[:, 0], ramps.contacts[:, 1])
+    levels = _bump(time, timeline.held[near], timeline.held[near, :, 2], timeline.held[near, :, 3])
     out[moved:count] = 1.0 - (1.0 - timeline.targets[near, moved:] * levels).prod(axis=0)
     tight = timeline.tight[near] * _bump(time, timeline.kept[near], ramps.jaw_s, ramps.jaw_s)
-    out[count] = 1.0 - (1.0 - tight).prod()
+    out[count] = tight.sum()
     said = timeline.said[near] * _bump(time, timeline.spans[near], ramps.speaking[0], ramps.speaking[1])
     out[count + 1] = 1.0 - (1.0 - said).prod()
 

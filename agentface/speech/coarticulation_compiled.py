@@ -17,25 +17,24 @@ def sample(timeline: Timeline, ramps: Ramps, time: float, weights: Doubles, out:
     weights[:] = 0.0
     out[:] = 0.0
     out[moved:count] = 1.0
-    silent, loose = 1.0, 1.0
+    silent, tight = 1.0, 0.0
     for segment in range(timeline.spans.shape[0]):
         start, end = timeline.spans[segment]
         if end <= time - REACH_S or start >= time + REACH_S:
             continue
         _attract(timeline, ramps, segment, time, weights, out)
-        for contact in range(ramps.contacts.shape[0]):
-            before, after = ramps.contacts[contact]
-            from_, to = timeline.held[segment, contact]
+        for contact in range(count - moved):
+            from_, to, before, after = timeline.held[segment, contact]
             level = timeline.targets[segment, moved + contact] * _bump(time, from_, to, before, after)
             out[moved + contact] *= 1.0 - level
         from_, to = timeline.kept[segment]
-        loose *= 1.0 - timeline.tight[segment] * _bump(time, from_, to, ramps.jaw_s, ramps.jaw_s)
+        tight += timeline.tight[segment] * _bump(time, from_, to, ramps.jaw_s, ramps.jaw_s)
         silent *= 1.0 - timeline.said[segment] * _bump(time, start, end, ramps.speaking[0], ramps.speaking[1])
     for place in range(moved):
         out[place] /= max(weights[ramps.articulator[place]], 1e-30)
     for place in range(moved, count):
         out[place] = 1.0 - out[place]
-    out[count] = 1.0 - loose
+    out[count] = tight
     out[count + 1] = 1.0 - silent
 
 

@@ -90,7 +90,7 @@ def timeline_of(segments: Sequence[Segment], articulation: Articulation, loudnes
     tight = np.array([articulation.tight(segment.part) for segment in segments])
     said = np.array([float(not segment.silent) for segment in segments])
     kept = spans[:, :1] + np.array([0.1, 0.8]) * lengths[:, None]
-    held = _held(articulation, spans, lengths)
+    held = _held(articulation, spans, rates)
     return Timeline(spans, np.column_stack([middle, flat]), np.clip(targets, -1, 1), dominance, held, tight, kept, said)
 
 
@@ -105,11 +105,13 @@ def _gains(articulation: Articulation, rates: Doubles, loudness: float) -> Doubl
     return gains
 
 
-def _held(articulation: Articulation, spans: Doubles, lengths: Doubles) -> Doubles:
-    """``(S, C, 2)`` s: from when to when each contact is whole."""
-    held = np.zeros((len(spans), len(articulation.contacts), 2))
+def _held(articulation: Articulation, spans: Doubles, rates: Doubles) -> Doubles:
+    """``(S, C, 4)`` s: from when to when each contact is whole, and how long it comes and goes."""
+    lengths, quick = spans[:, 1] - spans[:, 0], rates**articulation.rules.rate.contact_power
+    held = np.zeros((len(spans), len(articulation.contacts), 4))
     for place, row in enumerate(articulation.rules.contacts.values()):
-        end = spans[:, 0] + row.ends * lengths - row.part_s
+        end = spans[:, 0] + row.ends * lengths - row.part_s * quick
         held[:, place, 0] = np.minimum(spans[:, 0] + row.begins * lengths, end - row.least_s)
         held[:, place, 1] = end
+        held[:, place, 2], held[:, place, 3] = row.before_s * quick, row.after_s * quick
     return held

@@ -16,7 +16,7 @@ from agentface.head.model import HeadModel
 from agentface.parameters import PARAMETERS, indices_of
 from agentface.speech.phones import Phone
 from agentface.studies.harvard import Sentence, harvard
-from agentface.studies.mouth_ruler import MouthRuler
+from agentface.studies.mouth_ruler import MouthMeasures, MouthRuler
 
 HZ = 60
 FRAME_S = 1.0 / HZ
@@ -112,7 +112,7 @@ class Mouth:
             rows.append(self._ruler.measure(geometry, bite=bool(bite)))
             poses.append(face.pose.array)
             lips.append(1000.0 * geometry.vertices[self._lips].astype(np.float64))
-        columns = {name: np.array([row.get(name, np.nan) for row in rows]) for name in rows[0] | {"bite": 0.0}}
+        columns = dict(zip(MouthMeasures._fields, np.array(rows, np.float64).T, strict=True))
         notes.add(phones, times, regular, columns, np.array(poses, np.float64), np.array(lips), silent)
 
 
@@ -141,7 +141,7 @@ class _Notes:
             widened = frames & (times >= phone.start_s - FRAME_S) & (times <= phone.end_s + FRAME_S)
             if phone.symbol in LIPS_SHUT:
                 self._worst["gap"].append(columns["gap"][widened].min())
-                self._worst["shut"].append(_share(times[inside], columns["gap"][inside] <= SHUT_MM))
+                self._worst["shut"].append(_share(times[inside], columns["gap"][inside]))
             if phone.symbol in LIP_BITTEN:
                 self._worst["bite"].append(np.nanmin(columns["bite"][widened]))
             if phone.symbol in OPEN_VOWELS and phone.duration_s > _LONG_S:
@@ -210,11 +210,10 @@ def _bitten(phones: Iterable[Phone], times: Doubles) -> Doubles:
     return inside
 
 
-def _share(times: Doubles, shut: Doubles) -> float:
-    """For how much of the times something holds, linear from one to the next."""
-    if len(times) < 2:
-        return float(np.mean(shut))
-    return float(np.trapezoid(shut.astype(np.float64), times) / (times[-1] - times[0]))
+def _share(times: Doubles, gaps: Doubles) -> float:
+    """For how much of the times the lips are shut."""
+    shut = (gaps <= SHUT_MM).astype(np.float64)
+    return float(np.trapezoid(shut, times) / (times[-1] - times[0])) if times[-1] > times[0] else float(shut.mean())
 
 
 def _lag(phone: Phone, times: Doubles, jaw: Doubles) -> float:

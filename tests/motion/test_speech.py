@@ -226,7 +226,7 @@ def test_what_is_shown_is_speech_and_what_is_left_of_what_is_felt(sample, felt):
         x = said.get(plain, 0.0)
         whole = x + (1 - abs(x)) * (1 - speaking * a) * (1 - rounding * r) * (1 - closure * c) * felt
         if plain == "jaw_open":
-            assert value <= min(whole, 1 / max(sample[-2], 1e-9) - 1) + 1e-9
+            assert value <= min(whole, 1 / math.expm1(max(sample[-2], 1e-9))) + 1e-9
             assert value >= 0.0
         else:
             assert value == pytest.approx(whole, abs=1e-9)
