@@ -5,7 +5,8 @@ Every articulator goes through ``sum(D T) / sum(D)`` over the segments near by, 
 Modeling coarticulation in synthetic visual speech, 1993; the rounding e leaves no corner in the speed).
 
 Contacts, the hold on the jaw and speaking are whole for a while and come and go by half a cosine. Where several
-overlap, contacts and speaking are together ``1 - prod(1 - x)``, which has no corner either, and the holds their sum.
+overlap, contacts and speaking are together ``1 - prod(1 - x)``, which has no corner either, and the holds the cubic
+root of the sum of their cubes, nearly the largest.
 """
 
 from __future__ import annotations
@@ -33,7 +34,7 @@ def sample(timeline: Timeline, ramps: Ramps, time: float, out: Doubles) -> None:
     levels = _bump(time, timeline.held[near], timeline.held[near, :, 2], timeline.held[near, :, 3])
     out[moved:count] = 1.0 - (1.0 - timeline.targets[near, moved:] * levels).prod(axis=0)
     tight = timeline.tight[near] * _bump(time, timeline.kept[near], ramps.jaw_s, ramps.jaw_s)
-    out[count] = tight.sum()
+    out[count] = (tight**3.0).sum() ** (1.0 / 3.0)
     said = timeline.said[near] * _bump(time, timeline.spans[near], ramps.speaking[0], ramps.speaking[1])
     out[count + 1] = 1.0 - (1.0 - said).prod()
 

@@ -28,13 +28,13 @@ def sample(timeline: Timeline, ramps: Ramps, time: float, weights: Doubles, out:
             level = timeline.targets[segment, moved + contact] * _bump(time, from_, to, before, after)
             out[moved + contact] *= 1.0 - level
         from_, to = timeline.kept[segment]
-        tight += timeline.tight[segment] * _bump(time, from_, to, ramps.jaw_s, ramps.jaw_s)
+        tight += (timeline.tight[segment] * _bump(time, from_, to, ramps.jaw_s, ramps.jaw_s)) ** 3.0
         silent *= 1.0 - timeline.said[segment] * _bump(time, start, end, ramps.speaking[0], ramps.speaking[1])
     for place in range(moved):
         out[place] /= max(weights[ramps.articulator[place]], 1e-30)
     for place in range(moved, count):
         out[place] = 1.0 - out[place]
-    out[count] = tight
+    out[count] = tight ** (1.0 / 3.0)
     out[count + 1] = 1.0 - silent
 
 

@@ -19,6 +19,8 @@ AROUND_S = 4.0
 _SHORTEST_S = 1e-3
 _BEFORE, _AFTER = 3, 1
 """Of how many sounds before and after one the rate is taken: what comes later is not known yet when speech is live."""
+_HELD = 0.1, 0.65
+"""From when to when of a sound the jaw is held."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -89,7 +91,7 @@ def timeline_of(segments: Sequence[Segment], articulation: Articulation, loudnes
     targets = targets.reshape(-1, len(articulation.names)) * _gains(articulation, rates, loudness)
     tight = np.array([articulation.tight(segment.part) for segment in segments])
     said = np.array([float(not segment.silent) for segment in segments])
-    kept = spans[:, :1] + np.array([0.1, 0.8]) * lengths[:, None]
+    kept = spans[:, :1] + np.array(_HELD) * lengths[:, None]
     held = _held(articulation, spans, rates)
     return Timeline(spans, np.column_stack([middle, flat]), np.clip(targets, -1, 1), dominance, held, tight, kept, said)
 
