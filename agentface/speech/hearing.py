@@ -18,6 +18,9 @@ HEARD_HZ = 16_000
 _FRAME_S = 0.01
 _PHONES = "AA AE AH AO AW AY B CH D DH EH ER EY F G HH IH IY JH K L M N NG OW OY P R S SH T TH UH UW V W Y Z ZH"
 _MOST_WORDS = 2000
+_LOOP = {"lw": 1.0, "beam": 1e-30, "pbeam": 1e-30}
+"""What it expects of the order of phones counts little beside what it hears, and it drops no path early: with its own
+values, which are for words, it hears half as many lips that close."""
 _SHORTEST_S = 0.1
 _QUIET = 30.0
 """Root mean square of 16 bits: what is not louder is no speech, whatever the recogniser makes of it."""
@@ -29,7 +32,7 @@ Pronounce = Callable[[str], Iterable[str]]
 
 
 def heard(sound: Sound) -> Voiced:
-    """What a loop of all phones makes of a recording at ``HEARD_HZ``; about three frames in four are right.
+    """What a loop of all phones makes of a recording at ``HEARD_HZ``; about seven frames in ten are right.
 
     Raises SpeechError where there is no pocketsphinx, InvalidValueError for another rate.
     """
@@ -91,7 +94,8 @@ def _decoder(*, allphone: bool) -> Any:
         raise SpeechError(_NO_POCKETSPHINX) from error
     try:
         if allphone:
-            return Decoder(allphone=get_model_path("en-us/en-us-phone.lm.bin"), lm=None, loglevel="FATAL")
+            model = get_model_path("en-us/en-us-phone.lm.bin")
+            return Decoder(allphone=model, lm=None, loglevel="FATAL", **_LOOP)
         return Decoder(lm=None, loglevel="FATAL")
     except (RuntimeError, ValueError) as error:
         raise SpeechError(f"expected pocketsphinx to load its model, got: {error}") from error
