@@ -97,7 +97,7 @@ def test_serve_films_what_it_remembers(tmp_path, filmed, later):
     try:
         call(
             *("serve", "--osc", f"127.0.0.1:{port}", "--record", tmp_path / "a.mp4", "--duration", "1.2"),
-            *("--size", "64x64", "--fps", "20", *(["--every-frame"] if later else [])),
+            *("--size", "64x64", "--fps", "20", "--liveliness", "0", *(["--every-frame"] if later else [])),
         )
     finally:
         done.set()

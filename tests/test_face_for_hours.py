@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import resource
+from collections.abc import Callable
 
 import numpy as np
 import pytest
@@ -25,29 +26,22 @@ pytestmark = pytest.mark.soak
 def disturb(face: Face, draw: np.random.Generator) -> None:  # noqa: C901  # a list of things to do
     """One random thing that a program may ask for."""
     fade = float(draw.choice([0.1, 0.25, 1.0]))
-    match draw.integers(11):
-        case 0 | 1:
-            face.set_emotion(str(draw.choice(EMOTIONS)), float(draw.random()), fade=fade)
-        case 2:
-            face.set_emotion(dict(zip(EMOTIONS, draw.random(6).tolist(), strict=True)), fade=fade, hold=0.5)
-        case 3:
-            face.set_muscle(str(draw.choice(MUSCLES)), float(draw.random()), fade=fade)
-        case 4:
-            face.set_gaze(float(draw.uniform(-50, 50)), float(draw.uniform(-40, 40)), fade=fade)
-        case 5:
-            face.set_head(*(float(draw.uniform(-40, 40)) for _ in range(3)), fade=fade)
-        case 6:
-            face.neutral(fade)
-        case 7:
-            face.blink()
-        case 8:
-            face.look_at([*draw.uniform(-0.6, 0.6, 2), 0.6])
-        case 9:
-            face.gesture(str(draw.choice(list(face.channels.gestures.gestures))), float(draw.random()))
-        case 10:
-            face.set_state(str(draw.choice(STATES)))
-            face.channels.life.beat(float(draw.random()), 0.1)
-            face.channels.life.sentence_ends(0.2)
+    gestures = list(face.channels.gestures.gestures)
+    deeds: list[Callable[[], None]] = [
+        lambda: face.set_emotion(str(draw.choice(EMOTIONS)), float(draw.random()), fade=fade),
+        lambda: face.set_emotion(dict(zip(EMOTIONS, draw.random(6).tolist(), strict=True)), fade=fade, hold=0.5),
+        lambda: face.set_muscle(str(draw.choice(MUSCLES)), float(draw.random()), fade=fade),
+        lambda: face.set_gaze(float(draw.uniform(-50, 50)), float(draw.uniform(-40, 40)), fade=fade),
+        lambda: face.set_head(*(float(draw.uniform(-40, 40)) for _ in range(3)), fade=fade),
+        lambda: face.neutral(fade),
+        face.blink,
+        lambda: face.look_at([*draw.uniform(-0.6, 0.6, 2), 0.6]),
+        lambda: face.gesture(str(draw.choice(gestures)), float(draw.random())),
+        lambda: face.set_state(str(draw.choice(STATES))),
+        lambda: face.channels.life.beat(float(draw.random()), 0.1),
+        lambda: face.channels.life.sentence_ends(0.2),
+    ]
+    deeds[draw.integers(len(deeds))]()
 
 
 def peak_bytes() -> int:

@@ -131,7 +131,8 @@ def test_a_reader_that_goes_away_ends_nothing(tmp_path):
 def test_a_disk_that_fills_keeps_the_recording_until_then(tmp_path):
     path = tmp_path / "a.mp4"
     limited = 'ulimit -f 40; exec "$0" "$@"'  # KiB
-    command = ["bash", "-c", limited, *SERVE, "--size", "640x480", "--record", str(path), "--duration", "60"]
+    command = ["bash", "-c", limited, *SERVE, "--size", "640x480", "--liveliness", "0", "--record", str(path)]
+    command += ["--duration", "60"]  # a still face fills it slowly
     done = subprocess.run(command, check=False, capture_output=True, text=True, timeout=120)
     assert done.returncode == 1
     # the same limit keeps others, such as a cache or a measurement, from what they would write
