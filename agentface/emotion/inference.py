@@ -9,6 +9,7 @@ import numpy as np
 
 from agentface.cache import prepared, stamp_of
 from agentface.conventions import Doubles
+from agentface.emotion.batch import infer_in_numpy
 from agentface.emotion.explanation import Explanation, explain
 from agentface.emotion.rules import RuleBase
 from agentface.emotion.selector import MODES
@@ -31,12 +32,11 @@ class Inference:
     def __init__(self, rulebase: RuleBase, *, compiled: bool = True) -> None:
         self.rulebase = rulebase
         self._places = np.array([(index, row) for row, muscle in enumerate(MUSCLES) for index in indices_of(muscle)])
-        self._infer: Callable[..., None] | None = None
-        if not (compiled and can_compile()):
-            return
-        from agentface.emotion.inference_compiled import infer
+        self._infer: Callable[..., None] = infer_in_numpy
+        if compiled and can_compile():
+            from agentface.emotion.inference_compiled import infer_all
 
-        self._infer = infer
+            self._infer = infer_all
         modes = rulebase.modes
         rows = [(muscle, rules) for mode in modes for muscle, rules in mode.consequents.items()]
         first_row = np.cumsum([0, *(len(mode.consequents) for mode in modes)], dtype=np.int32)
@@ -47,15 +47,22 @@ class Inference:
         mode_of = np.zeros((len(EMOTIONS), len(EMOTIONS)), np.int32)
         for number, emotions in enumerate(MODES):
             mode_of[EMOTIONS.index(emotions[0]), EMOTIONS.index(emotions[-1])] = number
-        self._compiled = (rulebase.gap, mode_of, first_row, muscle_of_row, tables)
+        self._rules = (rulebase.gap, mode_of, first_row, muscle_of_row, tables)
+
+    @property
+    def compiled(self) -> bool:
+        """Whether a kernel does it."""
+        return self._infer is not infer_in_numpy
 
     def contractions(self, state: State) -> Doubles:
         """The contraction of each muscle, ``(len(MUSCLES),)`` float64 in 0..1, in the order of ``MUSCLES``."""
-        if self._infer is None:
-            contractions = self.explain(state).contractions
-            return np.array([contractions.get(muscle, 0.0) for muscle in MUSCLES])
-        out = np.empty(len(MUSCLES))
-        self._infer(EmotionState.of(state).array, *self._compiled, SETS, out)
+        contractions: Doubles = self.course(EmotionState.of(state).array[None])[0]
+        return contractions
+
+    def course(self, states: Doubles) -> Doubles:
+        """The contractions of many states, ``(N, 6)`` in 0..1 in the order of ``EMOTIONS``: ``(N, len(MUSCLES))``."""
+        out = np.empty((len(states), len(MUSCLES)))
+        self._infer(states, *self._rules, SETS, out)
         return out
 
     def pose(self, state: State) -> FacePose:
