@@ -22,7 +22,7 @@ FASTEST = 1.0
 pytestmark = pytest.mark.soak
 
 
-def disturb(face: Face, draw: np.random.Generator) -> None:
+def disturb(face: Face, draw: np.random.Generator) -> None:  # noqa: C901  # a list of things to do
     """One random thing that a program may ask for."""
     fade = float(draw.choice([0.1, 0.25, 1.0]))
     match draw.integers(11):

@@ -12,9 +12,17 @@ from agentface.emotion.sets import Sets
 from agentface.emotion.state import EMOTIONS
 
 
+def weigh_in_numpy(states: Doubles, gap: float, out: Doubles) -> None:
+    """As ``weigh_all`` of ``inference_compiled``, with the same arguments."""
+    out[:] = 0.0
+    for state, weights in zip(states, out, strict=True):
+        for emotions, weight in mode_weights(state, gap).items():
+            weights[EMOTIONS.index(emotions[0]), EMOTIONS.index(emotions[-1])] = weight
+
+
 def infer_in_numpy(
     states: Doubles,
-    gap: float,
+    weights: Doubles,
     modes: Indices,
     first_row: Indices,
     muscle_of_row: Indices,
@@ -23,21 +31,19 @@ def infer_in_numpy(
     out: Doubles,
 ) -> None:
     """As ``infer_all`` of ``inference_compiled``, with the same arguments."""
-    calls = [(number, *call) for number, state in enumerate(states) for call in mode_weights(state, gap).items()]
     out[:] = 0.0
-    if not calls:
-        return
-    named = [[EMOTIONS.index(emotion) for emotion in emotions] for _, emotions, _ in calls]
-    called = [modes[places[0], places[-1]] for places in named]
-    counts = [first_row[mode + 1] - first_row[mode] for mode in called]
-    rows = np.concatenate([np.arange(first_row[mode], first_row[mode + 1]) for mode in called])
-    fired = np.zeros((len(calls), *rules.shape[1:]))
-    for strengths, places, (number, _, _) in zip(fired, named, calls, strict=True):
-        found = rule_strengths(states[number, places])
-        strengths[:, : 1 if found.ndim == 1 else None] = found.reshape(len(found), -1)
+    numbers, firsts, seconds = np.nonzero(weights)
+    called = modes[firsts, seconds]
+    counts = first_row[called + 1] - first_row[called]
+    rows = np.array([row for mode in called for row in range(first_row[mode], first_row[mode + 1])], np.intp)
+    fired = np.zeros((len(called), *rules.shape[1:]))
+    for strengths, number, first, second in zip(fired, numbers, firsts, seconds, strict=True):
+        alone = first == second
+        found = rule_strengths(states[number, [first] if alone else [first, second]])
+        strengths[:, : 1 if alone else None] = found.reshape(len(found), -1)
     asked = _contractions(_cuts(np.repeat(fired, counts, axis=0), rules[rows]), sets)
-    asked *= np.repeat([weight for _, _, weight in calls], counts)
-    np.add.at(out, (np.repeat([number for number, _, _ in calls], counts), muscle_of_row[rows]), asked)
+    asked *= np.repeat(weights[numbers, firsts, seconds], counts)
+    np.add.at(out, (np.repeat(numbers, counts), muscle_of_row[rows]), asked)
     np.minimum(out, 1.0, out=out)
 
 

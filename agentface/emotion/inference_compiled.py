@@ -11,9 +11,9 @@ from agentface.kernel import kernel
 
 
 @kernel()
-def infer(
-    intensities: Doubles,
-    gap: float,
+def infer_all(
+    states: Doubles,
+    weights: Doubles,
     modes: Indices,
     first_row: Indices,
     muscle_of_row: Indices,
@@ -21,22 +21,44 @@ def infer(
     sets: Sets,
     out: Doubles,
 ) -> None:
-    """Write the contraction of every muscle into ``out``.
+    """Write the contraction of every muscle in every state into ``out``.
 
     Args:
-        intensities: (6,) float64 in 0..1.
-        gap: the selector's gap, above 0.
-        modes: (6, 6) int32: the mode of two emotions; on the diagonal that of one alone.
+        states: (N, 6) float64 in 0..1.
+        weights: (N, 6, 6), the weight of the mode of two emotions, the first of them before the second; on the
+            diagonal that of one alone.
+        modes: (6, 6) int32: likewise the mode.
         first_row: (modes + 1,) int32: where the rows of each mode begin.
         muscle_of_row: (rows,) int32.
         rules: (rows, 5, 5) int8: the contraction set for each intensity set of the mode's first and second emotion.
         sets: the fuzzy sets.
-        out: (muscles,) float64, overwritten.
+        out: (N, muscles) float64, overwritten.
     """
+    for number in range(len(states)):
+        _infer(states[number], weights[number], modes, first_row, muscle_of_row, rules, sets, out[number])
+
+
+@kernel()
+def weigh_all(states: Doubles, gap: float, out: Doubles) -> None:
+    """Write the weights of the modes of ``states (N, 6)`` into ``out (N, 6, 6)``; ``gap`` is the selector's."""
+    out[:] = 0.0
+    for number in range(len(states)):
+        _weigh(states[number], gap, out[number])
+
+
+@kernel()
+def _infer(
+    intensities: Doubles,
+    weights: Doubles,
+    modes: Indices,
+    first_row: Indices,
+    muscle_of_row: Indices,
+    rules: npt.NDArray[np.int8],
+    sets: Sets,
+    out: Doubles,
+) -> None:
     out[:] = 0.0
     count = len(intensities)
-    weights = np.zeros((count, count))
-    _weigh(intensities, gap, weights)
     known_cuts, known = np.empty((len(out), len(sets.contraction_centres))), np.empty(len(out))
     cuts = np.empty(len(sets.contraction_centres))
     for first in range(count):
@@ -55,22 +77,6 @@ def infer(
                     out[muscle_of_row[row]] += weight * known[place]
     for muscle in range(len(out)):
         out[muscle] = min(1.0, out[muscle])
-
-
-@kernel()
-def infer_all(
-    states: Doubles,
-    gap: float,
-    modes: Indices,
-    first_row: Indices,
-    muscle_of_row: Indices,
-    rules: npt.NDArray[np.int8],
-    sets: Sets,
-    out: Doubles,
-) -> None:
-    """As :func:`infer`, for ``states (N, 6)`` into ``out (N, muscles)``."""
-    for number in range(len(states)):
-        infer(states[number], gap, modes, first_row, muscle_of_row, rules, sets, out[number])
 
 
 @kernel()

@@ -74,18 +74,6 @@ def cubic(
     )
 
 
-def steepest_start(ramp: Doubles) -> float:
-    """How many times its mean speed a move may have at first and yet not turn back on its way.
-
-    The first speed is braked away beside the ramp by ``w (1 - w)^3 (1 + 3 w)``, as ``Envelope`` does.
-    """
-    w = np.linspace(0.0, 1.0, KNOTS)
-    braking = -((1.0 - w) ** 2) * (1.0 + 2.0 * w - 15.0 * w * w)
-    back = braking > 0.0
-    back[-1] = False
-    return float((ramp[back, 1] / braking[back]).min())
-
-
 def _exact(ramp: Doubles) -> Doubles:
     """The ramp without what rounding has left at its ends."""
     ramp[0], ramp[-1] = (0.0, 0.0), (1.0, 0.0)

@@ -14,7 +14,6 @@ from agentface.emotion.ramps import (
     cubic,
     exponential_offset,
     exponential_onset,
-    steepest_start,
     through,
 )
 
@@ -76,14 +75,3 @@ def test_the_cubic_is_hermites(u, length, value, slope, next_value, next_slope):
     expected = CubicHermiteSpline([0.0, length], [value, next_value], [slope, next_slope])
     got = cubic(np.float64(u), length, *map(np.float64, (value, slope, next_value, next_slope)))
     np.testing.assert_allclose(got, [expected(u * length), expected.derivative()(u * length)], rtol=1e-8, atol=1e-8)
-
-
-@pytest.mark.parametrize("ramp", [exponential_onset(), exponential_offset()])
-def test_a_move_with_the_steepest_start_does_not_turn_back(ramp):
-    def path(start):
-        w = FINE
-        return curve(ramp)(w) + start * w * (1.0 - w) ** 3 * (1.0 + 3.0 * w)
-
-    steepest = steepest_start(ramp)
-    assert np.diff(path(0.98 * steepest)).min() >= -1e-9
-    assert np.diff(path(1.1 * steepest)).min() < 0.0
