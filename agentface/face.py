@@ -19,6 +19,7 @@ from agentface.emotion.inference import default_inference
 from agentface.emotion.state import EMOTIONS, NEUTRAL, EmotionState, canonical_or_neutral
 from agentface.errors import InvalidValueError
 from agentface.head.model import HeadModel, load_model
+from agentface.motion.emotion import Hold
 from agentface.motion.gestures.table import all_gestures
 from agentface.motion.mixer import Mixer
 from agentface.motion.performance import Performance
@@ -44,6 +45,7 @@ from agentface.requests import (
     SetGaze,
     SetHead,
     SetLiveliness,
+    SetMood,
     SetMuscle,
     SetParameter,
     SetState,
@@ -86,7 +88,7 @@ class Face:
 
     Emotions: ``set_emotion("fear", 0.5)`` changes that emotion and leaves the others, so that several can be
     mixed one by one; ``set_emotion({"fear": 0.5})`` sets the whole state, and what it does not name goes to 0;
-    ``neutral()`` clears everything.
+    ``neutral()`` clears everything but the mood.
     """
 
     def __init__(
@@ -143,12 +145,13 @@ class Face:
         emotion: str | Mapping[str, float],
         intensity: float | None = None,
         *,
-        fade: float = FADE_S,
-        hold: float | None = None,
+        fade: float | None = None,
+        hold: Hold = None,
     ) -> None:
         """Show one emotion at ``intensity`` 0..1 beside the others, or, given a mapping, exactly this state.
 
-        The face gets there in ``fade`` seconds. With ``hold`` it goes back, as fast, after so many seconds.
+        The face gets there in ``fade`` seconds, or at each emotion's own pace. With ``hold`` it goes back to the mood
+        after so many seconds, or with ``own`` after as many as are that emotion's.
         ``neutral`` lets go of the emotions alone: at an intensity below 1, or in a mapping, it leaves each of them at
         most 1 minus that; by itself it needs no intensity.
         """
@@ -161,8 +164,12 @@ class Face:
             raise InvalidValueError("intensity", "none beside a mapping, which has its own", intensity)
         self.apply(SetEmotions(EmotionState.of(emotion), fade, hold))
 
+    def set_mood(self, mood: Mapping[str, float] | None = None, *, fade: float | None = None) -> None:
+        """Have a mood, to which brief expressions and ``neutral`` return: a state of emotions, {} or None for none."""
+        self.apply(SetMood(EmotionState.of(mood), fade))
+
     def neutral(self, fade: float = FADE_S) -> None:
-        """Let go of everything: emotions, single muscles, jaw, gaze and head."""
+        """Let go of everything, emotions (back to the mood), single muscles, jaw, gaze and head."""
         self.apply(Neutral(fade))
 
     def set_muscle(self, name: str, contraction: float | None, *, fade: float = FADE_S) -> None:
@@ -320,7 +327,9 @@ class Face:
 
         Takes seconds the first time on a machine, half a second later on. Changes nothing that is shown.
         """
-        self._inference.contractions({EMOTIONS[0]: 1.0})
+        shown = Mixer(self._inference)
+        shown.emotion.change({EMOTIONS[0]: 1.0}, None, None)
+        shown.advance(0.1)
         self.channels.speech.warm_up()
         self._deformer.at(FacePose.of(**dict.fromkeys(MUSCLES, 1.0)))
 
@@ -359,6 +368,11 @@ class Face:
     def emotion(self) -> EmotionState:
         """The target intensities: what the face shows when its moves are done."""
         return self.channels.emotion.target
+
+    @property
+    def mood(self) -> EmotionState:
+        """What brief expressions return to."""
+        return self.channels.emotion.mood
 
     @property
     def held(self) -> dict[str, float]:
@@ -449,18 +463,19 @@ class Face:
     def status(self) -> dict[str, Any]:
         """What the face is doing now, JSON-ready.
 
-        ``face``; ``emotion``, the six target intensities; ``shown``, the ``emotion``, the ``contractions`` and the
-        ``shares`` of signed movements as drawn now; ``action_units``, the targets of those that are set; ``drivers``,
-        the parameters that each channel moves; ``state`` and ``liveliness``; ``speech``, null while the face does not
-        speak, else the ``phone``, null in a pause, ``ends_in_s`` and how many utterances are ``waiting``; ``gaze_deg``,
-        yaw and pitch; ``frame_ms``, what the last step took; ``messages`` understood; ``errors``, the count of
-        malformed, unknown and rejected ones.
+        ``face``; ``emotion``, the six target intensities; ``mood``, those that they return to; ``shown``, the
+        ``emotion``, the ``contractions`` and the ``shares`` of signed movements as drawn now; ``action_units``, the
+        targets of those that are set; ``drivers``, the parameters that each channel moves; ``state`` and
+        ``liveliness``; ``speech``, null while the face does not speak, else the ``phone``, null in a pause,
+        ``ends_in_s`` and how many utterances are ``waiting``; ``gaze_deg``, yaw and pitch; ``frame_ms``, what the last
+        step took; ``messages`` understood; ``errors``, the count of malformed, unknown and rejected ones.
         """
         emotion, pose = self.channels.emotion, self.pose
-        shown = zip(emotion.target, emotion.intensities.value.tolist(), strict=True)
+        shown = zip(emotion.target, emotion.intensities.tolist(), strict=True)
         return {
             "face": self.model.name,
             "emotion": {name: round(value, 4) for name, value in emotion.target.as_dict().items()},
+            "mood": {name: round(value, 4) for name, value in emotion.mood.items()},
             "shown": {
                 "emotion": {name: round(value, 4) for name, value in shown},
                 "contractions": {name: round(pose[name], 4) for name in CONTRACTIONS},

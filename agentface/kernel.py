@@ -27,6 +27,7 @@ _READS: dict[str, tuple[str, ...]] = {
     "deform": ("mesh",),
     "tissue": ("mesh", "deform"),
     "mpeg4": ("mesh", "deform", "emotion", "speech"),
+    "motion": ("mesh", "deform", "emotion", "speech", "mpeg4"),
 }
 """The rooms that have kernels, and the others that each of them reads: an edit elsewhere leaves its kernels good."""
 _ABOVE = {"__init__.py", "__main__.py", "cli.py", "face.py"}

@@ -284,7 +284,7 @@ def test_rubbish_is_faults_and_no_error(face, name, content):
         (["bench", "fuzy"], "did you mean fuzzy"),
         (["bench", ""], "known: deform"),
         (["bench", "deform", "--face", "ambre"], "did you mean amber"),
-        (["figures", "nope"], "known: lips"),
+        (["figures", "qqq"], "known: lips"),
         (["figures", "wrinkle"], "did you mean wrinkles"),
     ],
 )

@@ -23,7 +23,7 @@ FASTEST = 1.0
 pytestmark = pytest.mark.soak
 
 
-def disturb(face: Face, draw: np.random.Generator) -> None:  # noqa: C901  # a list of things to do
+def disturb(face: Face, draw: np.random.Generator) -> None:
     """One random thing that a program may ask for."""
     fade = float(draw.choice([0.1, 0.25, 1.0]))
     gestures = list(face.channels.gestures.gestures)

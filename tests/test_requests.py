@@ -32,6 +32,7 @@ from agentface.requests import (
     SetGaze,
     SetHead,
     SetLiveliness,
+    SetMood,
     SetMuscle,
     SetParameter,
     SetState,
@@ -43,12 +44,14 @@ from tests.heads import head_model
 
 FRACTIONS = st.floats(0, 1)
 FADES = st.floats(0, 2)
+HOLDS = st.none() | FADES | st.just("own")
 PERFORMED = Performance.regular(
     10, np.repeat(np.linspace(0, 0.2, 5, dtype=np.float32)[:, None], COUNT, 1), np.ones((1, COUNT))
 )
 ANY_REQUEST = st.one_of(
-    st.builds(SetEmotion, st.sampled_from((*EMOTIONS, *ALIASES, "neutral")), FRACTIONS, FADES, st.none() | FADES),
-    st.builds(SetEmotions, st.dictionaries(st.sampled_from(EMOTIONS), FRACTIONS), FADES, st.none() | FADES),
+    st.builds(SetEmotion, st.sampled_from((*EMOTIONS, *ALIASES, "neutral")), FRACTIONS, st.none() | FADES, HOLDS),
+    st.builds(SetEmotions, st.dictionaries(st.sampled_from(EMOTIONS), FRACTIONS), st.none() | FADES, HOLDS),
+    st.builds(SetMood, st.dictionaries(st.sampled_from(EMOTIONS), FRACTIONS), st.none() | FADES),
     st.builds(Neutral, FADES),
     st.builds(SetMuscle, st.sampled_from(MUSCLES), st.none() | FRACTIONS, FADES),
     st.builds(SetParameter, st.sampled_from(NAMES), st.none() | FRACTIONS.map(lambda v: 0.1 * v), FADES),
@@ -90,7 +93,7 @@ def test_every_kind_is_tried_here():
     made = {name for name, kind in vars(requests).items() if isinstance(kind, type) and issubclass(kind, Request)}
     assert made - {"Request"} == {
         "SetEmotion", "SetEmotions", "Neutral", "SetMuscle", "SetParameter", "SetActionUnit", "SetGaze", "LookAt",
-        "SetHead", "Blink", "Play", "SetFap", "SetFaps", "SetArkit", "Speak", "Hush", "ShowViseme",
+        "SetHead", "Blink", "Play", "SetFap", "SetFaps", "SetArkit", "SetMood", "Speak", "Hush", "ShowViseme",
         "Gesture", "SetLiveliness", "SetState",
         "Say",
     }  # fmt: skip
@@ -111,7 +114,7 @@ def test_a_request_compares_hashes_pickles_copies_and_stays(request_):
 
 @given(st.lists(ANY_REQUEST, max_size=6))
 def test_noted_requests_give_the_same_motion_again(plan):
-    first, second, noted = Face(head_model(), compiled=False), Face(head_model(), compiled=False), []
+    first, second, noted = Face(head_model()), Face(head_model()), []
     first.noted.append(noted.append)
     shown = motion(first, plan)
     assert noted == plan
@@ -123,6 +126,9 @@ def test_the_methods_of_a_face_make_requests(face):
     face.noted.append(noted.append)
     face.set_emotion("joy", 0.5, fade=0.1, hold=1.0)
     face.set_emotion({"sad": 0.25})
+    face.set_mood({"joy": 0.5}, fade=1)
+    face.set_mood({})
+    face.set_mood()
     face.neutral()
     face.set_muscle("risorius", 0.5)
     face.set_muscle("risorius", None, fade=0)
@@ -145,6 +151,9 @@ def test_the_methods_of_a_face_make_requests(face):
     assert noted == [
         SetEmotion("happiness", 0.5, 0.1, 1.0),
         SetEmotions(EmotionState.of(sadness=0.25)),
+        SetMood(EmotionState.of(happiness=0.5), 1.0),
+        SetMood(EmotionState()),
+        SetMood(EmotionState()),
         Neutral(0.25),
         SetMuscle("risorius", 0.5),
         SetMuscle("risorius", None, 0.0),
@@ -175,6 +184,12 @@ def test_the_methods_of_a_face_make_requests(face):
         (lambda: SetEmotion("fear", None), "number"),
         (lambda: SetEmotion("fear", 0.5, -1), "seconds"),
         (lambda: SetEmotion("fear", 0.5, 0, math.nan), "finite"),
+        (lambda: SetEmotion("fear", 0.5, 0, "long"), "own"),
+        (lambda: SetEmotion("fear", 0.5, "own"), "number"),
+        (lambda: SetEmotions({"fear": 0.5}, hold=-1), "seconds"),
+        (lambda: SetMood({"fear": 2.0}), "0..1"),
+        (lambda: SetMood({"calm": 0.5}), "calm"),
+        (lambda: SetMood({}, -1), "seconds"),
         (lambda: SetEmotions({"fear": 2.0}), "0..1"),
         (lambda: SetEmotions([0.5]), "mapping"),
         (lambda: Neutral(math.inf), "finite"),

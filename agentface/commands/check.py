@@ -113,6 +113,7 @@ def _faults_in(read: Callable[[], object]) -> list[Fault]:
 
 
 def _rule_readers() -> dict[str, _Loader]:
+    from agentface.emotion.envelopes import load_envelopes
     from agentface.emotion.tables import load_blends, load_emotions
     from agentface.emotion.vocabularies import load_vocabularies
     from agentface.facs.action_units import load_action_units
@@ -128,6 +129,7 @@ def _rule_readers() -> dict[str, _Loader]:
         "blends.yaml": load_blends,
         "action_units.yaml": load_action_units,
         "conflicts.yaml": load_conflicts,
+        "envelopes.yaml": load_envelopes,
         "faps.yaml": load_faps,
         "phones.yaml": load_phones,
         "gestures.yaml": load_gestures,

@@ -9,6 +9,7 @@ import numpy as np
 
 from agentface.cache import prepared, stamp_of
 from agentface.conventions import Doubles
+from agentface.emotion.batch import infer_in_numpy, weigh_in_numpy
 from agentface.emotion.explanation import Explanation, explain
 from agentface.emotion.rules import RuleBase
 from agentface.emotion.selector import MODES
@@ -31,12 +32,12 @@ class Inference:
     def __init__(self, rulebase: RuleBase, *, compiled: bool = True) -> None:
         self.rulebase = rulebase
         self._places = np.array([(index, row) for row, muscle in enumerate(MUSCLES) for index in indices_of(muscle)])
-        self._infer: Callable[..., None] | None = None
-        if not (compiled and can_compile()):
-            return
-        from agentface.emotion.inference_compiled import infer
+        self._weigh: Callable[..., None] = weigh_in_numpy
+        self._infer: Callable[..., None] = infer_in_numpy
+        if compiled and can_compile():
+            from agentface.emotion.inference_compiled import infer_all, weigh_all
 
-        self._infer = infer
+            self._weigh, self._infer = weigh_all, infer_all
         modes = rulebase.modes
         rows = [(muscle, rules) for mode in modes for muscle, rules in mode.consequents.items()]
         first_row = np.cumsum([0, *(len(mode.consequents) for mode in modes)], dtype=np.int32)
@@ -47,15 +48,34 @@ class Inference:
         mode_of = np.zeros((len(EMOTIONS), len(EMOTIONS)), np.int32)
         for number, emotions in enumerate(MODES):
             mode_of[EMOTIONS.index(emotions[0]), EMOTIONS.index(emotions[-1])] = number
-        self._compiled = (rulebase.gap, mode_of, first_row, muscle_of_row, tables)
+        self._rules = (mode_of, first_row, muscle_of_row, tables)
+
+    @property
+    def compiled(self) -> bool:
+        """Whether a kernel does it."""
+        return self._infer is not infer_in_numpy
 
     def contractions(self, state: State) -> Doubles:
         """The contraction of each muscle, ``(len(MUSCLES),)`` float64 in 0..1, in the order of ``MUSCLES``."""
-        if self._infer is None:
-            contractions = self.explain(state).contractions
-            return np.array([contractions.get(muscle, 0.0) for muscle in MUSCLES])
-        out = np.empty(len(MUSCLES))
-        self._infer(EmotionState.of(state).array, *self._compiled, SETS, out)
+        contractions: Doubles = self.course(EmotionState.of(state).array[None])[0]
+        return contractions
+
+    def weights(self, states: Doubles) -> Doubles:
+        """How much of each mode the states ``(N, 6)`` show, ``(N, 6, 6)``.
+
+        That of two emotions stands at the first and the second, that of one alone on the diagonal.
+        """
+        out = np.empty((len(states), len(EMOTIONS), len(EMOTIONS)))
+        self._weigh(states, self.rulebase.gap, out)
+        return out
+
+    def course(self, states: Doubles, weights: Doubles | None = None) -> Doubles:
+        """The contractions of many states, ``(N, 6)`` in 0..1 in the order of ``EMOTIONS``: ``(N, len(MUSCLES))``.
+
+        With ``weights`` in place of those that :meth:`weights` gives.
+        """
+        out = np.empty((len(states), len(MUSCLES)))
+        self._infer(states, self.weights(states) if weights is None else weights, *self._rules, SETS, out)
         return out
 
     def pose(self, state: State) -> FacePose:

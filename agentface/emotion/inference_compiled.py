@@ -11,9 +11,9 @@ from agentface.kernel import kernel
 
 
 @kernel()
-def infer(
-    intensities: Doubles,
-    gap: float,
+def infer_all(
+    states: Doubles,
+    weights: Doubles,
     modes: Indices,
     first_row: Indices,
     muscle_of_row: Indices,
@@ -21,30 +21,60 @@ def infer(
     sets: Sets,
     out: Doubles,
 ) -> None:
-    """Write the contraction of every muscle into ``out``.
+    """Write the contraction of every muscle in every state into ``out``.
 
     Args:
-        intensities: (6,) float64 in 0..1.
-        gap: the selector's gap, above 0.
-        modes: (6, 6) int32: the mode of two emotions; on the diagonal that of one alone.
+        states: (N, 6) float64 in 0..1.
+        weights: (N, 6, 6), the weight of the mode of two emotions, the first of them before the second; on the
+            diagonal that of one alone.
+        modes: (6, 6) int32: likewise the mode.
         first_row: (modes + 1,) int32: where the rows of each mode begin.
         muscle_of_row: (rows,) int32.
         rules: (rows, 5, 5) int8: the contraction set for each intensity set of the mode's first and second emotion.
         sets: the fuzzy sets.
-        out: (muscles,) float64, overwritten.
+        out: (N, muscles) float64, overwritten.
     """
+    for number in range(len(states)):
+        _infer(states[number], weights[number], modes, first_row, muscle_of_row, rules, sets, out[number])
+
+
+@kernel()
+def weigh_all(states: Doubles, gap: float, out: Doubles) -> None:
+    """Write the weights of the modes of ``states (N, 6)`` into ``out (N, 6, 6)``; ``gap`` is the selector's."""
+    out[:] = 0.0
+    for number in range(len(states)):
+        _weigh(states[number], gap, out[number])
+
+
+@kernel()
+def _infer(
+    intensities: Doubles,
+    weights: Doubles,
+    modes: Indices,
+    first_row: Indices,
+    muscle_of_row: Indices,
+    rules: npt.NDArray[np.int8],
+    sets: Sets,
+    out: Doubles,
+) -> None:
     out[:] = 0.0
     count = len(intensities)
-    weights = np.zeros((count, count))
-    _weigh(intensities, gap, weights)
+    known_cuts, known = np.empty((len(out), len(sets.contraction_centres))), np.empty(len(out))
+    cuts = np.empty(len(sets.contraction_centres))
     for first in range(count):
         for second in range(first, count):
             weight = weights[first, second]
             if weight > 0.0:
                 strengths = _strengths(intensities[first], intensities[second], first == second, sets)
                 mode = modes[first, second]
+                count_known = 0
                 for row in range(first_row[mode], first_row[mode + 1]):
-                    out[muscle_of_row[row]] += weight * _contract(strengths, rules[row], sets)
+                    _cut(strengths, rules[row], cuts)
+                    place = _find(known_cuts, count_known, cuts)
+                    if place == count_known:
+                        known_cuts[place], known[place] = cuts, _contract(cuts, sets)
+                        count_known += 1
+                    out[muscle_of_row[row]] += weight * known[place]
     for muscle in range(len(out)):
         out[muscle] = min(1.0, out[muscle])
 
@@ -91,12 +121,28 @@ def _strengths(first: float, second: float, alone: bool, sets: Sets) -> Doubles:
 
 
 @kernel()
-def _contract(strengths: Doubles, rules: npt.NDArray[np.int8], sets: Sets) -> float:
-    cuts = np.zeros(len(sets.contraction_centres))
+def _cut(strengths: Doubles, rules: npt.NDArray[np.int8], cuts: Doubles) -> None:
+    cuts[:] = 0.0
     for i in range(strengths.shape[0]):
         for j in range(strengths.shape[1]):
             if strengths[i, j] > cuts[rules[i, j]]:
                 cuts[rules[i, j]] = strengths[i, j]
+
+
+@kernel()
+def _find(known: Doubles, count: int, cuts: Doubles) -> int:
+    """The place of ``cuts`` among the first rows of ``known``, or their count: most muscles of a mode are cut alike."""
+    for place in range(count):
+        same = True
+        for number in range(len(cuts)):
+            same = same and known[place, number] == cuts[number]
+        if same:
+            return place
+    return count
+
+
+@kernel()
+def _contract(cuts: Doubles, sets: Sets) -> float:
     low, high = sets.contraction_centres[0], sets.contraction_centres[-1]
     return float(min(1.0, max(0.0, (_centroid(cuts, sets) - low) / (high - low))))
 
@@ -117,9 +163,12 @@ def _centroid(cuts: Doubles, sets: Sets) -> float:
     if active_count == 1:
         return float(centres[active[0]])
     found = np.sort(extra[: 2 * active_count])
-    area, moment, left, low = 0.0, 0.0, 0.0, 0.0
+    begin, end = centres[active[0]] - half_width, centres[active[active_count - 1]] + half_width
     grid, cut = 0, 0
-    while grid < len(universe) or cut < len(found):
+    while grid + 1 < len(universe) and universe[grid + 1] <= begin:
+        grid += 1
+    area, moment, left, low = 0.0, 0.0, universe[grid], 0.0
+    while (grid < len(universe) and left < end) or cut < len(found):
         if cut == len(found) or (grid < len(universe) and universe[grid] <= found[cut]):
             right = universe[grid]
             grid += 1

@@ -1,4 +1,4 @@
-"""``rules/conflicts.yaml``: the rank of each channel."""
+"""``rules/conflicts.yaml``: the rank of each channel, and the pairs of muscles that look wrong together."""
 
 from __future__ import annotations
 
@@ -8,13 +8,15 @@ from functools import cache
 from pathlib import Path
 from typing import Annotated
 
+import numpy as np
 from pydantic import AfterValidator, Field
 
 from agentface.cache import prepared, stamp_of
 from agentface.config import Document, Table
 from agentface.errors import UnknownNameError, did_you_mean
 from agentface.motion.channel import Rank, parameters_meant
-from agentface.parameters import GROUPS, Way, parameter
+from agentface.motion.pairs import Pairs
+from agentface.parameters import GROUPS, MUSCLES, Way, parameter
 from agentface.resources import rules_file
 
 CHANNELS = (
@@ -30,6 +32,12 @@ def _target(key: str) -> str:
     except UnknownNameError as error:
         raise ValueError(f"expected a parameter, a muscle or a group; {error.hint}") from None
     return key
+
+
+def _muscle(name: str) -> str:
+    if name not in MUSCLES:
+        raise ValueError(f"expected a muscle without its side; {did_you_mean(name, MUSCLES)}")
+    return name
 
 
 Target = Annotated[str, AfterValidator(_target)]
@@ -58,6 +66,16 @@ class YieldRow(Table):
     closure: _Share = 0.0
 
 
+class PairRow(Table):
+    """Two muscles with their priorities, and why they look wrong together."""
+
+    muscles: Annotated[
+        dict[Annotated[str, AfterValidator(_muscle)], Annotated[int, Field(ge=1, le=100)]],
+        Field(min_length=2, max_length=2),
+    ]
+    reason: str
+
+
 class ConflictsFile(Table):
     """The whole file."""
 
@@ -66,6 +84,7 @@ class ConflictsFile(Table):
     speech_yields: dict[Target, YieldRow]
     speech_rounds: list[Target]
     speech_closes: list[Target]
+    pairs: list[PairRow] = Field(default_factory=list)
 
 
 @dataclass(frozen=True, slots=True)
@@ -84,10 +103,10 @@ class SpeechYields:
 
 
 class Conflicts:
-    """The ranks of the face's own channels by name, that of every other, and what gives way to speech."""
+    """The ranks of the face's own channels by name, that of every other, what gives way to speech, and the pairs."""
 
-    def __init__(self, ranks: Mapping[str, Rank], others: Rank, yields: SpeechYields) -> None:
-        self._ranks, self._others, self.yields = dict(ranks), others, yields
+    def __init__(self, ranks: Mapping[str, Rank], others: Rank, yields: SpeechYields, pairs: Pairs) -> None:
+        self._ranks, self._others, self.yields, self.pairs = dict(ranks), others, yields, pairs
 
     def rank(self, name: str) -> Rank:
         """The rank of the channel called ``name``."""
@@ -106,9 +125,13 @@ def load_conflicts(path: str | Path) -> Conflicts:
         for name in CHANNELS:
             if name not in data:
                 document.fault(("channels", name), "this key", "nothing")
+    for place, pair in enumerate(_named(document)):
+        if pair and pair in _named(document)[:place]:
+            document.fault(("pairs", place), "each pair once", "the pair a second time")
     document.check()
     assert file is not None, "a document without faults is parsed"  # noqa: S101 - for the type checker
-    return Conflicts({name: row.rank() for name, row in file.channels.items()}, file.others.rank(), _yields(file))
+    ranks = {name: row.rank() for name, row in file.channels.items()}
+    return Conflicts(ranks, file.others.rank(), _yields(file), _pairs(file.pairs))
 
 
 def _yields(file: ConflictsFile) -> SpeechYields:
@@ -129,6 +152,19 @@ def _plain(key: str) -> list[str]:
     """The parameters that a target means, without their sides."""
     known = map(parameter, parameters_meant(key))
     return list(dict.fromkeys(each.name[:-2] if each.partner else each.name for each in known))
+
+
+def _named(document: Document) -> list[set[str]]:
+    """The muscles of each pair as they are written; none where they are not."""
+    data = document.data.get("pairs") if isinstance(document.data, dict) else None
+    rows = [row.get("muscles") if isinstance(row, dict) else None for row in data] if isinstance(data, list) else []
+    return [{str(name) for name in row} if isinstance(row, dict) else set() for row in rows]
+
+
+def _pairs(rows: list[PairRow]) -> Pairs:
+    places = np.array([[MUSCLES.index(name) for name in row.muscles] for row in rows], np.int32).reshape(-1, 2)
+    priorities = np.array([list(row.muscles.values()) for row in rows], np.float64).reshape(-1, 2)
+    return Pairs(places[:, 0].copy(), places[:, 1].copy(), priorities)
 
 
 @cache

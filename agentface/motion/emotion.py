@@ -1,40 +1,58 @@
-"""Six intensities in time, and the contractions that the rules make of them."""
+"""Six intensities in time over a mood, and the contractions that the rules make of them."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
-from typing import Protocol
+from collections.abc import Callable, Mapping
+from typing import Literal, TypeAlias
 
 import numpy as np
 
 from agentface.conventions import Doubles, Floats
+from agentface.emotion.envelopes import Envelopes, default_envelopes
 from agentface.emotion.state import EMOTIONS, EmotionState
-from agentface.motion.envelope import Envelope
+from agentface.motion.braking import SHORTEST_S
+from agentface.motion.conflicts import default_conflicts
+from agentface.motion.course import LAG_S, Course, EmotionRules
+from agentface.motion.intensities import Intensities, trace_in_numpy
+from agentface.motion.modes import LONGEST_S
+from agentface.motion.pairs import Pairs, held_back_in_numpy
 from agentface.parameters import MUSCLES, NAMES, indices_of
 
-
-class EmotionRules(Protocol):
-    """What turns emotions into contractions: ``agentface.emotion.inference.Inference``."""
-
-    def contractions(self, state: EmotionState) -> Doubles:
-        """``(len(MUSCLES),)`` in 0..1."""
+Hold: TypeAlias = float | Literal["own"] | None
+"""Seconds for which an expression stays; ``own`` for the apex of its envelope, None for ever."""
+TAKING_OVER = 0.6
+"""Of the time until an emotion is there that has another one go, the part in which the intensities change."""
 
 
 class EmotionChannel:
-    """Six target intensities, each with its own end, and the contractions that the rules make of them.
+    """Six intensities, each at its own pace, over a mood, and the contractions that the rules make of them.
 
-    The change goes muscle by muscle from the contractions shown now to those of the new state; of these each side of
-    the face makes its ``gains (COUNT,)``.
+    Of these each side of the face makes its ``gains (COUNT,)``. Without ``envelopes`` and ``pairs``, those that come
+    with agentface.
+
+    Attributes:
+        mood: what the intensities return to.
     """
 
-    def __init__(self, rules: EmotionRules, gains: Floats | None = None) -> None:
-        self._rules = rules
-        self.target = EmotionState()
-        self.intensities = Envelope(len(EMOTIONS))
-        self._muscles = Envelope(len(MUSCLES))
-        self._left = np.full(len(EMOTIONS), math.inf)
-        self._fades = np.zeros(len(EMOTIONS))
+    def __init__(
+        self,
+        rules: EmotionRules,
+        gains: Floats | None = None,
+        *,
+        envelopes: Envelopes | None = None,
+        pairs: Pairs | None = None,
+    ) -> None:
+        self._envelopes = envelopes or default_envelopes()
+        trace, held_back = _kernels() if rules.compiled else (trace_in_numpy, held_back_in_numpy)
+        self._intensities = Intensities(self._envelopes, trace)
+        self._course = Course(rules, self._intensities, pairs or default_conflicts().pairs, held_back)
+        self.mood = EmotionState()
+        self._now = 0.0
+        self._shown = np.zeros(len(EMOTIONS), np.bool_)
+        self._returns, self._next = np.full(len(EMOTIONS), math.inf), math.inf
+        self._fades = np.full(len(EMOTIONS), math.nan)
+        self._due = np.zeros(len(EMOTIONS))
         places = [(index, row) for row, muscle in enumerate(MUSCLES) for index in indices_of(muscle)]
         self.names = tuple(NAMES[index] for index, _ in places)
         self._rows = np.array([row for _, row in places])
@@ -42,46 +60,94 @@ class EmotionChannel:
             np.ones(len(places)) if gains is None else gains[[index for index, _ in places]].astype(np.float64)
         )
 
-    def change(self, intensities: Mapping[str, float], fade: float, hold: float | None) -> None:
-        """Set some emotions, leave the others; with ``hold`` these return to 0 that many seconds after the fade.
+    @property
+    def target(self) -> EmotionState:
+        """Where the intensities go."""
+        return EmotionState(self._intensities.target)
 
-        ``intensities`` maps names of ``EMOTIONS`` to 0..1.
+    @property
+    def intensities(self) -> Doubles:
+        """``(6,)``, those shown now."""
+        values: Doubles = self._intensities.at(np.array([self._now]))[0][0]
+        return values
+
+    def change(self, intensities: Mapping[str, float], fade: float | None, hold: Hold) -> None:
+        """Set some emotions, leave the others; with ``hold`` these return to the mood so long after the fade.
+
+        ``intensities`` maps names of ``EMOTIONS`` to 0..1. Without a ``fade`` each goes at its own pace.
         """
-        places = [EMOTIONS.index(emotion) for emotion in intensities]
-        self._left[places] = math.inf if hold is None else fade + hold
-        self._fades[places] = fade
-        self._aim(self.target.as_dict() | dict(intensities), fade)
+        places = np.array([EMOTIONS.index(emotion) for emotion in intensities], np.intp)
+        levels = np.array(list(intensities.values()), np.float64)
+        self._shown[places] = levels > 0.0
+        self._fades[places] = math.nan if fade is None else fade
+        stays = self._envelopes.apex_s[places] if hold == "own" else math.inf if hold is None else hold
+        arrives = self._now + self._seconds(places, levels)
+        self._move(places, levels)
+        self._returns[places] = arrives + stays
+        self._next = float(self._returns.min())
+
+    def change_mood(self, mood: EmotionState, fade: float | None = None) -> None:
+        """Have another mood; what is not just now shown for itself goes there within ``fade`` seconds."""
+        self.mood = mood
+        self._return(~self._shown, self._envelopes.mood_s if fade is None else fade)
+
+    def release(self, fade: float | None) -> None:
+        """Let go of all six: back to the mood."""
+        self._return(np.ones(len(EMOTIONS), np.bool_), math.nan if fade is None else fade)
 
     def advance(self, dt: float) -> None:
         """Let ``dt`` seconds pass."""
-        while self._left.min() < dt:
-            part = float(max(self._left.min(), 0.0))
-            self._advance(part)
-            dt -= part
-            ended = self._left <= 0.0
-            fade = float(self._fades[ended].max())
-            self._left[ended] = math.inf
-            self._aim(dict(zip(EMOTIONS, np.where(ended, 0.0, self.target.array).tolist(), strict=True)), fade)
-        self._advance(dt)
-
-    def release(self, fade: float) -> None:
-        """Let go of all six."""
-        self.change(EmotionState(), fade, None)
+        until = self._now + dt
+        while self._next < until:
+            self._now = max(self._next, self._now)
+            self._course.advance(self._now)
+            self._return(self._returns <= self._now, self._fades)
+        self._now = until
+        self._course.advance(until)
 
     def write(self, values: Doubles, weights: Doubles) -> bool:
         """The contractions now."""
-        if self._muscles.resting:
+        shown = self._course.shown
+        if shown is None:
             return False
-        np.take(self._muscles.value, self._rows, out=values)
+        np.take(shown, self._rows, out=values)
         values *= self._gains
         return True
 
-    def _advance(self, dt: float) -> None:
-        self._left -= dt
-        self.intensities.advance(dt)
-        self._muscles.advance(dt)
+    def _return(self, which: np.ndarray, fades: float | Doubles) -> None:
+        """Back to the mood, in so many seconds each, NaN for its own pace."""
+        places = np.flatnonzero(which)
+        self._fades[places] = np.broadcast_to(fades, len(EMOTIONS))[places]
+        self._shown[places], self._returns[places] = False, math.inf
+        self._next = float(self._returns.min())
+        self._move(places, self.mood.array[places])
 
-    def _aim(self, intensities: Mapping[str, float], fade: float) -> None:
-        self.target = EmotionState.of(intensities)
-        self.intensities.move(self.target.array, fade)
-        self._muscles.move(self._rules.contractions(self.target), fade)
+    def _move(self, places: np.ndarray, levels: Doubles) -> None:
+        """Set out for ``levels``; what is on its way there already, and due earlier, keeps its way."""
+        seconds, told = self._seconds(places, levels), ~np.isnan(self._fades[places])
+        takes_over = self._course.takes_over(self._now, places, levels)
+        # What comes of the intensities is late by the lag, and by the mean of modes where one takes over from another:
+        # a fade that was told has room for both, and at one's own pace there is time.
+        room = np.where(seconds > 0.0, np.maximum(seconds - LAG_S, SHORTEST_S), 0.0)
+        due = self._now + room + (np.where(told, 0.0, LONGEST_S) if takes_over else 0.0)
+        fades = np.where(told, TAKING_OVER * room, room) if takes_over else room
+        sooner = told & (due < self._due[places]) | (seconds == 0.0) & (not self._course.settled)
+        new = (levels != self._intensities.target[places]) | sooner
+        if new.any():
+            places, fades = places[new], fades[new]
+            self._intensities.move(places, levels[new], fades, self._now)
+            self._due[places] = due[new]
+            self._course.turn(self._now, places[fades == 0.0], float(self._due.max()))
+
+    def _seconds(self, places: np.ndarray, levels: Doubles) -> Doubles:
+        """How long each takes to its level: the fade that it was told, or its own pace."""
+        rises = levels >= self.intensities[places]
+        own = np.where(rises, self._envelopes.onset_s[places], self._envelopes.offset_s[places])
+        return np.where(np.isnan(self._fades[places]), own, self._fades[places])
+
+
+def _kernels() -> tuple[Callable[..., None], Callable[..., None]]:
+    from agentface.motion.intensities_compiled import trace
+    from agentface.motion.pairs_compiled import held_back
+
+    return trace, held_back

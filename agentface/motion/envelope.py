@@ -8,15 +8,12 @@ import numpy as np
 import numpy.typing as npt
 
 from agentface.conventions import Doubles
+from agentface.motion.braking import braking, durations
 
-_PEAK = 0.2
-"""The largest value of the braking curve is just below this."""
 _ALMOST = 1.0 - 1e-9
 """A move that is so far done is over: sums of frame times are not exact."""
 _MONOTONE = 2.5
 """A minimum-jerk path does not overshoot while its first speed is at most this times its mean speed."""
-_OVERSHOOT = 0.1
-"""How far, of the whole range, a value may run past its target when it is turned round in full motion."""
 
 
 class Envelope:
@@ -67,7 +64,14 @@ class Envelope:
         self.target[places] = targets
         self._start[places] = self.value[places]
         self._speed[places] = self.velocity[places]
-        self._travel[places], self._brake[places] = self._durations(places, max(fade, 1e-6))
+        self._travel[places], self._brake[places] = durations(
+            self._start[places],
+            self.target[places],
+            self._speed[places],
+            fade,
+            (self.low[places], self.high[places]),
+            _MONOTONE,
+        )
         self._elapsed[places] = 0.0
         self._settle((self.value == self.target).all() and not self.velocity.any())
 
@@ -86,10 +90,10 @@ class Envelope:
         w = np.minimum(self._elapsed / self._brake, 1.0)
         distance = self.target - self._start
         path = u**3 * (10.0 - 15.0 * u + 6.0 * u * u)
-        braking = w * (1.0 - w) ** 3 * (1.0 + 3.0 * w)
-        value = self._start + distance * path + self._speed * self._brake * braking
+        braked, braked_speed = braking(w)
+        value = self._start + distance * path + self._speed * self._brake * braked
         self.velocity = distance / self._travel * 30.0 * u * u * (1.0 - u) ** 2
-        self.velocity += self._speed * (1.0 - w) ** 2 * (1.0 + 2.0 * w - 15.0 * w * w)
+        self.velocity += self._speed * braked_speed
         there = (u > _ALMOST) & (w > _ALMOST)
         self.velocity[there] = 0.0
         self.value = np.where(there, self.target, np.clip(value, self.low, self.high))
@@ -99,19 +103,3 @@ class Envelope:
     def _settle(self, there: Any) -> None:
         self._settled = bool(there)
         self._resting = self._settled and not self.target.any()
-
-    def _durations(self, places: npt.NDArray[np.intp], fade: float) -> tuple[Doubles, Doubles]:
-        # Two ways to take over a speed: shorten the move until it does not overshoot, or brake beside it and
-        # overshoot a little where the range leaves room. Each value takes the one that brakes more gently.
-        speed = self._speed[places]
-        ahead = (self.target[places] - self._start[places]) * np.sign(speed)
-        furthest = np.where(speed > 0.0, self.high[places], -self.low[places])
-        outermost = np.maximum(self._start[places] * np.sign(speed), self.target[places] * np.sign(speed))
-        room = np.minimum(furthest - outermost, _OVERSHOOT * (self.high - self.low)[places])
-        quick = np.maximum(np.abs(speed), 1e-12)
-        shortened = np.minimum(_MONOTONE * np.maximum(ahead, 0.0) / quick, fade)
-        beside = np.minimum(np.maximum(room, 0.0) / (_PEAK * quick), fade)
-        shorten = (ahead > 0.0) & (shortened >= beside)
-        travel = np.where(shorten, shortened, fade)
-        brake = np.where(shorten, shortened, beside)
-        return np.maximum(travel, 1e-6), np.maximum(brake, 1e-6)

@@ -15,7 +15,8 @@ from agentface.motion.action_units import ActionUnitChannel
 from agentface.motion.blink import BlinkChannel
 from agentface.motion.channel import Channel, Rank
 from agentface.motion.conflicts import Conflicts, default_conflicts
-from agentface.motion.emotion import EmotionChannel, EmotionRules
+from agentface.motion.course import EmotionRules
+from agentface.motion.emotion import EmotionChannel
 from agentface.motion.faps import FapChannel
 from agentface.motion.figures import LifeTable, default_life
 from agentface.motion.gaze import GazeChannel
@@ -126,7 +127,7 @@ class Mixer(MutableMapping[str, Channel]):
         self._values: Doubles = np.zeros(COUNT)
         self._wanted: tuple[bytes, ...] | None = None
         self._pose = FacePose()
-        self.emotion = self._own("emotion", EmotionChannel(rules, gains))
+        self.emotion = self._own("emotion", EmotionChannel(rules, gains, pairs=self._conflicts.pairs))
         table, head, blink = life or default_life(), TurnChannel("head"), BlinkChannel()
         self.gaze = self._own("gaze", GazeChannel(head, table))
         self.head = self._own("head", head)

@@ -6,7 +6,8 @@ import numpy as np
 
 from agentface.conventions import check_rate
 from agentface.emotion.score import Change, Score
-from agentface.motion.emotion import EmotionChannel, EmotionRules
+from agentface.motion.course import EmotionRules
+from agentface.motion.emotion import EmotionChannel
 from agentface.motion.performance import Performance
 from agentface.parameters import COUNT, NEUTRAL, indices_of
 

@@ -13,6 +13,7 @@ from agentface.requests.emotion import SetEmotion, SetEmotions
 from agentface.requests.fap import SetFap, SetFaps
 from agentface.requests.gesture import Gesture
 from agentface.requests.life import SetLiveliness, SetState
+from agentface.requests.mood import SetMood
 from agentface.requests.muscle import SetMuscle, SetParameter
 from agentface.requests.neutral import Neutral
 from agentface.requests.performance import Play
@@ -43,6 +44,7 @@ __all__ = [
     "SetGaze",
     "SetHead",
     "SetLiveliness",
+    "SetMood",
     "SetMuscle",
     "SetParameter",
     "SetState",

@@ -10,7 +10,10 @@ from agentface.requests.request import FADE_S, Movable, Request
 
 @dataclass(frozen=True, slots=True)
 class Neutral(Request):
-    """Let go of everything, within ``fade`` seconds: emotions, muscles, jaw, gaze, head, and whatever else moves it."""
+    """Let go of everything, within ``fade`` seconds: muscles, jaw, gaze, head, and whatever else moves it.
+
+    The emotions go back to the mood.
+    """
 
     fade: float = FADE_S
 

@@ -60,6 +60,15 @@ def test_the_kernel_equals_its_numpy_twin(intensities: list[float]):
     assert inference.contractions(state) == pytest.approx(expected, abs=1e-12)
 
 
+@given(st.lists(INTENSITIES, min_size=1, max_size=4))
+def test_states_at_once_are_each_what_it_is_by_itself(states: list[list[float]]):
+    plain, kernel = default_inference(compiled=False), default_inference()
+    assert (plain.compiled, kernel.compiled) == (False, True)
+    each = [kernel.contractions(EmotionState(state)) for state in states]
+    for inference in (plain, kernel):
+        np.testing.assert_allclose(inference.course(np.array(states)), each, atol=1e-12)
+
+
 @given(INTENSITIES)
 def test_contractions_are_fractions_and_only_of_muscles_with_rules(intensities: list[float]):
     inference, state = default_inference(), EmotionState(intensities)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from agentface.conventions import Doubles
+from agentface.emotion.state import EMOTIONS
 from agentface.motion.mixer import Mixer
 from agentface.parameters import MUSCLES
 
@@ -12,8 +13,13 @@ from agentface.parameters import MUSCLES
 class NoRules:
     """A face that feels nothing."""
 
-    def contractions(self, _state):
-        return np.zeros(len(MUSCLES))
+    compiled = True
+
+    def weights(self, states):
+        return np.zeros((len(states), len(EMOTIONS), len(EMOTIONS)))
+
+    def course(self, states, _weights=None):
+        return np.zeros((len(states), len(MUSCLES)))
 
 
 def channels(seed: int = 0, liveliness: float = 0.6, state: str | None = None) -> Mixer:

@@ -17,6 +17,7 @@ from agentface.head.model import load_model
 from agentface.motion.blink import CLOSE_S, HOLD_S, OPEN_S
 from agentface.motion.channel import Rank
 from agentface.motion.conflicts import CHANNELS, default_conflicts
+from agentface.motion.emotion import EmotionChannel
 from agentface.motion.envelope import Envelope
 from agentface.motion.mixer import Mixer
 from agentface.parameters import COUNT, MUSCLES, NAMES, PARAMETERS, FacePose, indices_of, parameter
@@ -29,7 +30,7 @@ class Oracle:
     """What a face shows, put together for each parameter by itself, as it was before there were ranks."""
 
     def __init__(self):
-        self.emotion = Envelope(len(MUSCLES))
+        self.emotion = EmotionChannel(default_inference())  # whose course has tests of its own
         self.set = {known.name: Envelope(1) for known in PARAMETERS if known.kind not in ("gaze", "head")}
         self.by_hand = {name: Envelope(1) for name in self.set}
         self.angles = {
@@ -38,7 +39,7 @@ class Oracle:
         self.closure, self.opens_in = Envelope(1), math.inf
 
     def feel(self, emotions, fade):
-        self.emotion.move(default_inference().contractions(EmotionState.of(emotions)), fade)
+        self.emotion.change(EmotionState.of(emotions), fade, None)
 
     def hold(self, muscle, value, fade):
         for name in (NAMES[index] for index in indices_of(muscle)):
@@ -65,7 +66,8 @@ class Oracle:
             self.angles[name].move(0.0, fade)
 
     def advance(self, dt):
-        for envelope in (self.emotion, *self.set.values(), *self.by_hand.values(), *self.angles.values()):
+        self.emotion.advance(dt)
+        for envelope in (*self.set.values(), *self.by_hand.values(), *self.angles.values()):
             envelope.advance(dt)
         if self.opens_in <= dt:
             self.closure.advance(self.opens_in)
@@ -78,10 +80,12 @@ class Oracle:
 
     def pose(self):
         closure = float(self.closure.value[0])
-        shown = {}
-        for row, muscle in enumerate(MUSCLES):
+        shown, felt = {}, np.zeros(len(self.emotion.names))
+        self.emotion.write(felt, np.ones_like(felt))
+        by_name = dict(zip(self.emotion.names, felt.tolist(), strict=True))
+        for muscle in MUSCLES:
             for index in indices_of(muscle):
-                value = float(GAINS[index]) * float(self.emotion.value[row])
+                value = float(GAINS[index]) * by_name[NAMES[index]]
                 if muscle == "orbicularis_oculi_palpebralis":
                     value += closure * (1.0 - value)
                 if muscle == "levator_palpebrae":

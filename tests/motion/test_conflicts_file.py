@@ -6,6 +6,7 @@ from click.testing import CliRunner
 from agentface.cli import cli
 from agentface.errors import DataError
 from agentface.motion.conflicts import CHANNELS, load_conflicts
+from agentface.parameters import MUSCLES
 from agentface.resources import rules_file
 
 GOOD = rules_file("conflicts.yaml").read_text()
@@ -70,3 +71,31 @@ def test_another_form_is_a_fault(tmp_path, text):
     path = tmp_path / "conflicts.yaml"
     path.write_text(text)
     assert faults_of(path)
+
+
+@pytest.mark.parametrize(
+    ("row", "said"),
+    [
+        ("{muscles: {risorius: 60, risorios: 40}, reason: x}", "risorius"),
+        ("{muscles: {risorius_l: 60, mentalis: 40}, reason: x}", "without its side"),
+        ("{muscles: {risorius: 60}, reason: x}", "2"),
+        ("{muscles: {risorius: 60, mentalis: 40, nasalis: 20}, reason: x}", "2"),
+        ("{muscles: {risorius: 0, mentalis: 101}, reason: x}", "100"),
+        ("{muscles: {risorius: 60, mentalis: 40}}", "this key"),
+        ("{muscles: {depressor_anguli_oris: 60, zygomaticus_major: 40}, reason: x}", "once"),
+    ],
+)
+def test_a_pair_is_two_muscles_with_priorities_once(tmp_path, row, said):
+    path = tmp_path / "conflicts.yaml"
+    path.write_text(f"{GOOD}  - {row}\n")
+    assert any(said in f"{fault}" for fault in faults_of(path))
+    assert {fault.line for fault in faults_of(path)} == {path.read_text().count("\n")}
+
+
+def test_pairs_may_be_left_out(tmp_path):
+    path = tmp_path / "conflicts.yaml"
+    path.write_text(GOOD[: GOOD.index("pairs:")])
+    assert load_conflicts(path).pairs.first.size == 0
+    table = load_conflicts(rules_file("conflicts.yaml")).pairs
+    assert MUSCLES[table.first[0]] == "zygomaticus_major"
+    assert table.priorities[0].tolist() == [60.0, 40.0]

@@ -28,6 +28,7 @@ from agentface.requests import (
     SetGaze,
     SetHead,
     SetLiveliness,
+    SetMood,
     SetMuscle,
     SetParameter,
     SetState,
@@ -115,13 +116,27 @@ def _emotion(arguments: Sequence[Any]) -> Request:
 
 
 def _emotions(arguments: Sequence[Any]) -> Request:
-    form = "pairs of name and intensity"
-    if not arguments or len(arguments) % 2 or len(arguments) > 2 * len((*EMOTIONS, NEUTRAL)):
-        raise InvalidValueError("arguments", f"one to {len(EMOTIONS) + 1} {form}", len(arguments), f"send {form}")
+    if not arguments:
+        raise InvalidValueError("arguments", *_pairs_of_emotions(arguments))
+    return SetEmotions(_emotions_named(arguments))
+
+
+def _mood(arguments: Sequence[Any]) -> Request:
+    return SetMood(_emotions_named(arguments))
+
+
+def _emotions_named(arguments: Sequence[Any]) -> EmotionState:
+    if len(arguments) % 2 or len(arguments) > 2 * len((*EMOTIONS, NEUTRAL)):
+        raise InvalidValueError("arguments", *_pairs_of_emotions(arguments))
     names = [canonical_or_neutral(name) for name in arguments[::2]]
     if len(set(names)) < len(names):
         raise InvalidValueError("emotions", "each emotion once", " ".join(names))
-    return SetEmotions(EmotionState.of(dict(zip(names, arguments[1::2], strict=True))))
+    return EmotionState.of(dict(zip(names, arguments[1::2], strict=True)))
+
+
+def _pairs_of_emotions(arguments: Sequence[Any]) -> tuple[str, int, str]:
+    form = "pairs of name and intensity"
+    return f"one to {len(EMOTIONS) + 1} {form}", len(arguments), f"send {form}"
 
 
 def _neutral(arguments: Sequence[Any]) -> Request | None:
@@ -261,6 +276,7 @@ def _named(arguments: Sequence[Any]) -> tuple[str, float]:
 _READERS: dict[str, Reader] = {
     "emotion": _emotion,
     "emotions": _emotions,
+    "mood": _mood,
     "neutral": _neutral,
     "muscle": _muscle,
     "parameter": _parameter,

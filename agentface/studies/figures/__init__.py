@@ -25,6 +25,7 @@ FIGURES: dict[str, str] = {
     "faps": "each FAP at both ends of what the faces show of it, a sheet a group",
     "looks": "the faces in their looks, and the styles of hair",
     "life": "five seconds of a face that listens, every tenth frame",
+    "envelopes": "how emotions come and go, and what the muscles make of a change",
     "expressions": "Figures 13 to 16: neutral, surprise, happiness, sadness",
     "springs": "the second paper's Figure 2: the three layers, and the springs in and between them",
     "integrated_face": "its Figure 4: the skull, the 23 muscles, the hypodermis",
