@@ -187,3 +187,36 @@ def test_it_refuses_a_film_that_cannot_be_written(tmp_path):
     assert "no folder" in fail("--osc", "127.0.0.1:0", "--record", tmp_path / "no" / "a.mp4")
     assert ".mp4" in fail("--osc", "127.0.0.1:0", "--record", tmp_path / "a.avi")
     assert "even" in fail("--osc", "127.0.0.1:0", "--record", tmp_path / "a.mp4", "--size", "95x64")
+
+
+TWO = ("--face", "amber", "--face", "onyx")
+
+
+@pytest.mark.parametrize(
+    ("options", "told"),
+    [
+        (["--id", "left", "--id", "right"], "an --id for each --face or none, got 2 for 1"),
+        ([*TWO, "--id", "left"], "an --id for each --face or none, got 1 for 2"),
+        ([*TWO, "--id", "left", "--id", "left"], "'left' twice"),
+        ([*TWO, "--view", "window"], "--view goes with one --face"),
+        ([*TWO, "--record", "a.mp4"], "--record goes with one --face"),
+        ([*TWO, "--look", "ginger"], "--look goes with one --face"),
+        (["--face", "amber"] * 9, "at most 8 faces, got 9"),
+    ],
+)
+def test_what_several_faces_do_not_have(options, told):
+    assert told in fail(*options, code=2)
+
+
+def test_an_id_is_not_the_name_of_a_message():
+    assert "not the name of a message, got 'emotion'" in fail("--id", "emotion")
+
+
+def test_the_same_face_twice_needs_ids():
+    assert "'amber' twice; give each --face an --id" in fail("--face", "amber", "--face", "amber", code=2)
+
+
+def test_one_face_under_an_id_says_so():
+    result = call("--osc", "127.0.0.1:0", "--duration", "0.1", "--id", "host")
+    assert result.exit_code == 0, result.output
+    assert result.stdout.startswith("host (amber) listens to OSC on 127.0.0.1:")

@@ -176,6 +176,7 @@ def make_face(
     look: str | None = None,
     running: bool = False,
     liveliness: float = 0.0,
+    seed: int = 0,
 ) -> Face:
     """The face that the options name; not ``compiled``, it is ready sooner and slow a frame.
 
@@ -185,7 +186,7 @@ def make_face(
     from agentface.face import Face
 
     with _wait_told(face, compiled=compiled):
-        made = Face(face, deformer=deformer, compiled=compiled, look=look, liveliness=liveliness)
+        made = Face(face, deformer=deformer, compiled=compiled, look=look, liveliness=liveliness, seed=seed)
         if running:
             made.warm_up()
     return made

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+from contextlib import ExitStack, contextmanager
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -13,7 +15,7 @@ from agentface.commands.film import Shot
 from agentface.commands.options import (
     address,
     camera_option,
-    face_options,
+    deformer_option,
     given,
     live_quality_option,
     liveliness_option,
@@ -22,8 +24,11 @@ from agentface.commands.options import (
     size_option,
 )
 from agentface.commands.streams import say, tell
+from agentface.resources import DEFAULT_FACE
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping, Sequence
+
     from agentface.face import Face
     from agentface.io.osc.server import OscServer
 
@@ -48,7 +53,17 @@ _RECORD = "Film the face; a name like face-%05d.png gives numbered transparent p
 @size_option
 @live_quality_option
 @camera_option
-@face_options
+@click.option(
+    "--face",
+    "names",
+    multiple=True,
+    default=(DEFAULT_FACE,),
+    metavar="NAME|PATH",
+    show_default=True,
+    help="A face's name, or its folder. Several are several faces, each reached under /agentface/ID/....",
+)
+@click.option("--id", "ids", multiple=True, metavar="ID", help="What OSC calls a face, if not by its name; for each.")
+@deformer_option
 @click.pass_context
 def serve(
     ctx: click.Context,
@@ -64,38 +79,50 @@ def serve(
     size: tuple[int, int],
     quality: str | None,
     camera: str,
-    face: str,
+    names: tuple[str, ...],
+    ids: tuple[str, ...],
     deformer: str,
 ) -> None:
     """Show what OSC messages say, until Ctrl-C.
 
     Listens on this machine alone; --osc 0.0.0.0:7400 takes messages from others, too.
-    """
-    _check_options(given(ctx), window=view == "window", record=record is not None)
-    from agentface.io.osc.server import OscServer
-    from agentface.io.voice_output import VoiceOutput
 
-    shown = make_face(face, deformer, look=look, running=True, liveliness=liveliness)
-    shown.talker.failed.append(lambda error: tell(str(error)))
-    with until_told() as ending, OscServer(shown, *osc) as server, VoiceOutput(shown.talker, tell):
+    \b
+    agentface serve --view window
+    agentface serve --face amber --id left --face onyx --id right
+    """  # noqa: D301 - \b is click's mark of lines to keep
+    _check_options(given(ctx), window=view == "window", record=record is not None, several=len(names) > 1)
+    _check_ids(names, ids)
+    from agentface.io.osc.server import OscServer
+
+    made = [
+        make_face(name, deformer, look=look, running=True, liveliness=liveliness, seed=seed)
+        for seed, name in enumerate(names)
+    ]
+    faces = _by_id(made, ids)
+    with until_told() as ending, OscServer(faces if ids or len(made) > 1 else made[0], *osc) as server, _heard(faces):
         if view == "window":
-            _in_a_window(server, shown, ending, look, quality, camera)
+            _in_a_window(server, faces, ending, look, quality, camera)
             return
         rate = fps or (30.0 if record else 60.0)
         end = duration or math.inf
         if record is None:
-            _run(server, shown, ending, rate, end)
+            _run(server, faces, ending, rate, end)
             return
         shot = Shot(record, size, camera, quality or "fast", rate, look, live=True)
         if every_frame:
-            _film_later(server, shown, ending, shot, end, make_face(face, deformer, look=look, liveliness=liveliness))
+            again = make_face(names[0], deformer, look=look, liveliness=liveliness)
+            _film_later(server, faces, ending, shot, end, again)
         else:
-            _film_now(server, shown, ending, shot, end)
+            _film_now(server, faces, ending, shot, end)
 
 
-def _check_options(names: set[str], *, window: bool, record: bool) -> None:
-    """Raise UsageError for the first option that would do nothing."""
+def _check_options(names: set[str], *, window: bool, record: bool, several: bool) -> None:
+    """Raise UsageError for the first option that would do nothing, or is for one face."""
     for name, goes_with, there in (
+        ("record", "one --face", not several),
+        ("view", "one --face", not several or not window),
+        ("look", "one --face", not several),
         ("record", "--view none", not window),
         ("duration", "--view none", not window),
         ("fps", "--view none", not window),
@@ -109,42 +136,92 @@ def _check_options(names: set[str], *, window: bool, record: bool) -> None:
             raise click.UsageError(f"--{name.replace('_', '-')} goes with {goes_with}")
 
 
-def _announce(face: Face, server: OscServer) -> None:
-    say(f"{face.model.name} listens to OSC on {server.host}:{server.port}")
+def _check_ids(names: Sequence[str], ids: Sequence[str]) -> None:
+    from agentface.io.osc.addresses import check_id
+    from agentface.io.osc.receiver import MOST_FACES
+
+    if len(names) > MOST_FACES:
+        raise click.UsageError(f"expected at most {MOST_FACES} faces, got {len(names)}")
+    if ids and len(ids) != len(names):
+        raise click.UsageError(f"expected an --id for each --face or none, got {len(ids)} for {len(names)}")
+    for name in ids:
+        check_id(name)
+    _check_apart(ids)
+
+
+def _check_apart(ids: Sequence[str]) -> None:
+    twice = next((name for name in ids if ids.count(name) > 1), None)
+    if twice is not None:
+        raise click.UsageError(f"expected each id once, got {twice!r} twice; give each --face an --id of its own")
+
+
+def _by_id(faces: Sequence[Face], ids: Sequence[str]) -> dict[str, Face]:
+    names = ids or [face.model.name for face in faces]
+    _check_apart(names)
+    return dict(zip(names, faces, strict=True))
+
+
+@contextmanager
+def _heard(faces: Mapping[str, Face]) -> Iterator[None]:
+    """The faces' voices on the machine's device, and in the terminal what goes wrong with them."""
+    from agentface.io.voice_output import VoiceOutput
+
+    def complain(name: str, error: object) -> None:
+        tell(f"{name}: {error}" if len(faces) > 1 else str(error))
+
+    with ExitStack() as outputs:
+        for name, face in faces.items():
+            face.talker.failed.append(partial(complain, name))
+            outputs.enter_context(VoiceOutput(face.talker, tell))
+        yield
+
+
+def _announce(faces: Mapping[str, Face], server: OscServer) -> None:
+    called = [name if name == face.model.name else f"{name} ({face.model.name})" for name, face in faces.items()]
+    say(f"{' and '.join(called)} listen{'s' * (len(called) == 1)} to OSC on {server.host}:{server.port}")
+
+
+def _only(faces: Mapping[str, Face]) -> Face:
+    (face,) = faces.values()
+    return face
 
 
 def _in_a_window(
-    server: OscServer, face: Face, ending: Ending, look: str | None, quality: str | None, camera: str
+    server: OscServer, faces: Mapping[str, Face], ending: Ending, look: str | None, quality: str | None, camera: str
 ) -> None:
     from agentface.commands.show import make_window
 
-    window = make_window(face, look=look, quality=quality, camera=camera)
-    _announce(face, server)
+    window = make_window(_only(faces), look=look, quality=quality, camera=camera)
+    _announce(faces, server)
     window.run([server], stopped=ending.told)
 
 
-def _run(server: OscServer, face: Face, ending: Ending, fps: float, duration: float) -> None:
+def _run(server: OscServer, faces: Mapping[str, Face], ending: Ending, fps: float, duration: float) -> None:
     from agentface.clock import SystemClock
     from agentface.live.loop import run
 
-    _announce(face, server)
-    run(face, SystemClock(), [server], fps=fps, duration=duration, stopped=ending.told)
+    face, *beside = faces.values()
+    _announce(faces, server)
+    run(face, SystemClock(), [server], fps=fps, duration=duration, stopped=ending.told, beside=beside)
 
 
-def _film_now(server: OscServer, face: Face, ending: Ending, shot: Shot, duration: float) -> None:
+def _film_now(server: OscServer, faces: Mapping[str, Face], ending: Ending, shot: Shot, duration: float) -> None:
     from agentface.clock import SystemClock
     from agentface.live.loop import run
     from agentface.live.newest import LiveSink
 
+    face = _only(faces)
     with LiveSink(lambda: shot.open(face.model, duration if math.isfinite(duration) else None)) as film:
-        _announce(face, server)
+        _announce(faces, server)
         frames = run(face, SystemClock(), [server], [film], fps=shot.fps, duration=duration, stopped=ending.told)
     if film.dropped:
         lost = f"{film.dropped} of {frames} frames are left out, as this machine draws too slowly for them"
         tell(f"{shot.path}: {lost}; --every-frame films all of them")
 
 
-def _film_later(server: OscServer, face: Face, ending: Ending, shot: Shot, duration: float, again: Face) -> None:
+def _film_later(
+    server: OscServer, faces: Mapping[str, Face], ending: Ending, shot: Shot, duration: float, again: Face
+) -> None:
     """As :func:`_film_now`, but ``again``, a face like the first, goes through it all when it is over.
 
     A slow machine films as smoothly as a fast one, and a deformer with memory has the same one.
@@ -155,9 +232,10 @@ def _film_later(server: OscServer, face: Face, ending: Ending, shot: Shot, durat
     from agentface.live.loop import run
     from agentface.live.notes import Recorder, Replay
 
+    face = _only(faces)
     with shot.open(face.model):
         pass  # what cannot be written or drawn is told before the recording
-    _announce(face, server)
+    _announce(faces, server)
     with Recorder(face) as recorder, HeardRecorder(face, recorder, shot.fps) as heard:
         run(face, SystemClock(), [server], [recorder], fps=shot.fps, duration=duration, stopped=ending.told)
     if recorder.last_s is None:

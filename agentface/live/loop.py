@@ -67,6 +67,7 @@ def run(
     longest_step_s: float = math.inf,
     stopped: Callable[[], bool] = lambda: False,
     held: AbstractContextManager[object] | None = None,
+    beside: Sequence[Face] = (),
 ) -> int:
     """Step ``face`` up to ``fps`` times a second, until ``stopped`` or until ``duration`` seconds are over.
 
@@ -84,6 +85,7 @@ def run(
         longest_step_s: the face takes no larger step, whatever the clock says.
         stopped: asked before each frame.
         held: entered while the face is asked and stepped: a lock where another thread uses the face, too.
+        beside: other faces that are stepped with it; the frames are those of ``face``.
 
     Returns the number of frames. Raises InvalidValueError for another ``fps``, and whatever sources and sinks raise.
     """
@@ -98,7 +100,10 @@ def run(
         with exclusive:
             for source in sources:
                 source.take_in(last - start)
-            geometry = face.step(min(now - last, longest_step_s))
+            dt = min(now - last, longest_step_s)
+            geometry = face.step(dt)
+            for other in beside:
+                other.step(dt)
             frame = Frame(now - start, clock.now() - now, face.pose, geometry)
         for sink in sinks:
             sink.show(frame)

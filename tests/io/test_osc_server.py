@@ -43,7 +43,8 @@ def client(server):
 
 def step(server):
     server.take_in()
-    server._face.step(0.01)
+    for face in server._receiver._faces.values():
+        face.step(0.01)
 
 
 def hear(server, client, seconds=10.0):

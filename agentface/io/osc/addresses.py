@@ -37,21 +37,27 @@ from agentface.requests import (
 )
 
 PREFIX = "/agentface/"
-STATUS = "status"
+STATUS, ERROR = "status", "error"
 Reader: TypeAlias = Callable[[Sequence[Any]], Request | None]
 """Makes the request of a message's arguments; None asks for nothing. Raises UnknownNameError or InvalidValueError."""
 _SPECIAL = frozenset(" #*,?[]{}")
+_LONGEST_ID = 64
 
 
 class Addresses:
-    """The addresses that a face called ``face`` answers to; a program adds its own with :meth:`add`.
+    """The addresses that faces answer to; a program adds its own with :meth:`add`.
 
-    ``/agentface/emotion`` and its like are also known as ``/agentface/<face>/emotion``.
+    ``/agentface/emotion`` and its like are for all of them, ``/agentface/<id>/emotion`` for one.
     """
 
-    def __init__(self, face: str) -> None:
+    def __init__(self, *ids: str) -> None:
         names = (*_READERS, STATUS)
-        self._ours = {f"{before}{name}": name for before in (PREFIX, f"{PREFIX}{face}/") for name in names}
+        self._all = ids
+        self._ours = {f"{PREFIX}{name}": name for name in names}
+        self._one: dict[str, str] = {}
+        for known in ids:
+            self._ours |= {f"{PREFIX}{known}/{name}": name for name in names}
+            self._one |= {f"{PREFIX}{known}/{name}": known for name in names}
         self._readers: dict[str, Reader] = {}
 
     def add(self, address: str, reader: Reader) -> None:
@@ -61,8 +67,7 @@ class Addresses:
         InvalidValueError for what is no address, and for one that is taken.
         """
         parts = address.split("/") if isinstance(address, str) else []
-        plain = all(part and part.isascii() and part.isprintable() and not _SPECIAL & set(part) for part in parts[1:])
-        if len(parts) < 2 or parts[0] or not plain:
+        if len(parts) < 2 or parts[0] or not all(map(_is_plain, parts[1:])):
             raise InvalidValueError("address", "one like /avatar/breath, in ASCII without #*,?[]{} and blanks", address)
         if address in self._ours or address in self._readers:
             raise InvalidValueError("address", "one that is not taken", address, "remove it first, or choose another")
@@ -72,6 +77,15 @@ class Addresses:
         """Take away what a program added; raises UnknownNameError."""
         if self._readers.pop(address, None) is None:
             raise UnknownNameError("added address", address, tuple(self._readers))
+
+    def ids(self, address: str) -> tuple[str, ...]:
+        """The faces that a message to one of these addresses is for."""
+        return (self._one[address],) if address in self._one else self._all
+
+    def for_one(self, address: str, face: str) -> str:
+        """The address that reaches only the face with this id where ``address`` reaches all; a program's stays."""
+        name = self._ours.get(address)
+        return address if name is None else f"{PREFIX}{face}/{name}"
 
     def is_status(self, address: str) -> bool:
         """Whether it is one of those that ask for the status."""
@@ -94,6 +108,20 @@ class Addresses:
         except Exception as error:  # a message must not end a server, whatever a program's reader thinks of it
             expected = "arguments that the program can read"
             raise InvalidValueError("arguments", expected, f"{type(error).__name__}: {error}") from error
+
+
+def check_id(name: object) -> str:
+    """An id for a face, as a part of an address; raises InvalidValueError."""
+    if not isinstance(name, str) or not _is_plain(name) or "/" in name or len(name) > _LONGEST_ID:
+        raise InvalidValueError("id", f"up to {_LONGEST_ID} characters of ASCII without /#*,?[]{{}} and blanks", name)
+    if name in _READERS or name in (STATUS, ERROR):
+        raise InvalidValueError("id", "one that is not the name of a message", name, "choose another")
+    return name
+
+
+def _is_plain(part: str) -> bool:
+    """Whether it may be a part of an address between two slashes."""
+    return bool(part) and part.isascii() and part.isprintable() and not _SPECIAL & set(part)
 
 
 def reason_and_hint(error: AgentFaceError) -> tuple[str, str]:

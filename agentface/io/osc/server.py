@@ -8,6 +8,7 @@ import struct
 import sys
 import threading
 from collections import deque
+from collections.abc import Mapping
 from types import TracebackType
 from typing import Self
 
@@ -28,29 +29,33 @@ _SOCKET_BUFFER = 4 * 1024 * 1024
 
 
 class OscServer:
-    """Receives OSC for a face from its making until ``close``; as a context manager, until the block ends.
+    """Receives OSC for faces from its making until ``close``; as a context manager, until the block ends.
 
     A source for :func:`agentface.live.loop.run`; a program with a loop of its own calls ``take_in`` before each
     ``face.step``. A thread for each socket does nothing but empty it; everything else happens in the loop's thread.
 
     Args:
-        face: what the messages are for.
+        faces: what the messages are for: a face, which is also called by its own name, or at most eight by their ids.
         host: the address to listen on. The default takes messages from this machine alone, to ``127.0.0.1`` and,
             where the machine has it, ``::1``: ``localhost`` may mean either.
         port: 0 for any free one.
         clock: dates bundles and limits the rate of answers.
 
-    ``addresses`` are what it understands; a program may add its own. Raises ServerError when the address of the
-    machine cannot be had.
+    ``addresses`` are what it understands; a program may add its own. Raises InvalidValueError for an id, and
+    ServerError when the address of the machine cannot be had.
     """
 
     def __init__(
-        self, face: Face, host: str = DEFAULT_HOST, port: int = DEFAULT_PORT, *, clock: Clock | None = None
+        self,
+        faces: Face | Mapping[str, Face],
+        host: str = DEFAULT_HOST,
+        port: int = DEFAULT_PORT,
+        *,
+        clock: Clock | None = None,
     ) -> None:
+        self._receiver = Receiver(faces, self._reply, clock or SystemClock())
         self._sockets = _bind(host, port)
         self.host, self.port = self._sockets[0].getsockname()[:2]
-        self._face = face
-        self._receiver = Receiver(face, self._reply, clock or SystemClock())
         self.addresses = self._receiver.addresses
         self._waiting: deque[tuple[bytes, Sender]] = deque(maxlen=MOST_WAITING)
         self._closed = threading.Event()
