@@ -14,6 +14,7 @@ uniform vec3 teeth;
 uniform float shaded;   // how much less light the lower jaw gets, in the lips' shadow
 
 const vec3 GUM = vec3(0.46, 0.20, 0.185), TONGUE = vec3(0.40, 0.15, 0.145);
+const vec3 BEHIND_LIPS = vec3(0.86, 0.60, 0.52);
 
 // The colour of a tooth; the gum lies on it in a bow.
 vec3 enamel(out float gum) {
@@ -50,5 +51,7 @@ void main() {
     }
     gloss += sky_part * hemisphere(reflect(-view, n)) * fresnel(0.045, n_v) * 0.8;
     float back = 0.07 + exp(-max(reach.z - 0.014, 0.0) / 0.016);   // it is dark in the throat
+    // lips put forward shade the teeth behind them, and colour what reaches these
+    albedo *= mix(vec3(1.0), BEHIND_LIPS, enamelled * smoothstep(0.0115, 0.0165, reach.z));
     colour = vec4(finish((1.0 - shaded * inside) * (albedo * light * mix(back, 1.0, 0.25 * enamelled) + gloss * back)), 1.0);
 }

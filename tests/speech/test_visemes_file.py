@@ -26,7 +26,7 @@ def test_the_fifteen_come_first_and_others_have_no_number():
         ("    name: TH", "    name: DD", "visemes.4.name"),
         ("  14:", "  15:", "visemes.15"),
         ("name: iy", "nam: iy", "more.0.nam"),
-        ("risorius: 0.7", "risorius: 1.7", "more.0.parameters.risorius"),
+        ("risorius: 0.94", "risorius: 1.94", "more.0.parameters.risorius"),
     ],
 )
 def test_faults_are_told_where_they_are(tmp_path, old, new, where):

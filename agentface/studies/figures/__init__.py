@@ -23,6 +23,7 @@ FIGURES: dict[str, str] = {
     "rings": "the rings of vertices round mouth and eyes",
     "feature_points": "the feature points of MPEG-4 with their numbers",
     "faps": "each FAP at both ends of what the faces show of it, a sheet a group",
+    "visemes": "the mouth in each viseme, from two sides",
     "looks": "the faces in their looks, and the styles of hair",
     "life": "five seconds of a face that listens, every tenth frame",
     "envelopes": "how emotions come and go, and what the muscles make of a change",
