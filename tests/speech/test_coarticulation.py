@@ -135,7 +135,7 @@ def test_speaking_lasts_from_the_first_sound_to_the_last():
 def test_the_jaw_is_kept_while_a_sibilant_is_said():
     timeline = laid_out([("aa", 0.2, 0), ("s", 0.1, 0), ("aa", 0.2, 0)])
     assert shown(timeline, [0.25])[0][-2] == pytest.approx(math.log(1 + 1 / ARTICULATION._table["SS"].jaw_most))
-    assert shown(timeline, [0.1])[0][-2] == 0
+    assert shown(timeline, [0.05])[0][-2] == 0
 
 
 @given(SAYINGS, SAYINGS)
