@@ -73,7 +73,10 @@ def make(name: str, python: str) -> Path:
         project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
         path.write_text("\n".join(lowest(project)) + "\n")
         constraints = ["--constraint", str(path)]
-    for words in (["--upgrade", "pip>=25.1"], [*constraints, "--editable", f"{ROOT}[window]", "--group", group]):
+    for words in (
+        ["--upgrade", "pip>=25.1"],
+        [*constraints, "--editable", f"{ROOT}[window,speech,sound]", "--group", group],
+    ):
         subprocess.run([inside, "-m", "pip", "install", *words], check=True, env=environment, cwd=ROOT)
     return inside
 

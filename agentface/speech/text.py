@@ -38,7 +38,7 @@ _PAUSE = re.compile(r"[,;:\u2013\u2014]\s|\s[\u2013\u2014-]\s")
 
 
 @dataclass(frozen=True, slots=True)
-class Sentence:
+class SpokenSentence:
     """Part of a text that is spoken in one breath, and the place of its first character in that text."""
 
     text: str
@@ -80,7 +80,7 @@ def _plain(character: str) -> str:
     return "" if kind == "Cf" and character not in _KEPT_FORMATS else character
 
 
-def sentences(text: str) -> list[Sentence]:
+def sentences(text: str) -> list[SpokenSentence]:
     """The sentences of what :func:`spoken` has made, each with a letter or a digit; none where there is nothing to say.
 
     A sentence of more than ``LONGEST_SENTENCE`` characters comes in parts, cut at a pause where it has one.
@@ -100,12 +100,12 @@ def _bounds(text: str) -> Iterator[tuple[int, int]]:
     yield start, len(text)
 
 
-def _parts(text: str, start: int, end: int) -> Iterator[Sentence]:
+def _parts(text: str, start: int, end: int) -> Iterator[SpokenSentence]:
     while start < end:
         cut = end if end - start <= LONGEST_SENTENCE else _cut(text, start, start + LONGEST_SENTENCE)
         part = text[start:cut]
         if any(character.isalnum() for character in part):
-            yield Sentence(part.strip(), start + len(part) - len(part.lstrip()))
+            yield SpokenSentence(part.strip(), start + len(part) - len(part.lstrip()))
         start = cut
 
 
