@@ -32,7 +32,9 @@ from agentface.parameters import COUNT, HIGH, LOW, NEUTRAL, PARAMETERS, WAYS, Fa
 
 _Channel = TypeVar("_Channel", bound=Channel)
 _NEUTRAL, _LOW, _HIGH = (limits.astype(np.float64) for limits in (NEUTRAL, LOW, HIGH))
-_HEAD = [known.index for known in PARAMETERS if known.kind == "head"]
+_HEADS = [known.index for known in PARAMETERS if known.kind == "head"]
+_HEAD = slice(_HEADS[0], _HEADS[-1] + 1)
+_HEAD_LOW, _HEAD_HIGH = _LOW[_HEAD], _HIGH[_HEAD]
 
 
 class _Layer:
@@ -179,7 +181,7 @@ class Mixer(MutableMapping[str, Channel]):
         values[:] = _NEUTRAL
         _blend(self._turning, values, wants)
         if self.gaze.steady:
-            self.gaze.head_is(*np.minimum(np.maximum(values, _LOW), _HIGH)[_HEAD].tolist())
+            self.gaze.head_is(*np.minimum(np.maximum(values[_HEAD], _HEAD_LOW), _HEAD_HIGH).tolist())
             wants[self._gaze_layer] = self._layers["gaze"].write()
         wanted = tuple(wants)
         if wanted == self._wanted:
@@ -271,7 +273,7 @@ class Mixer(MutableMapping[str, Channel]):
         layers = tuple(self._layers.values())
         for number, layer in enumerate(layers):
             for row, name in enumerate(layer.names):
-                turns = parameter(name).index in _HEAD
+                turns = parameter(name).index in _HEADS
                 key = (layer.rank.priority_of(name), number, layer.rank.way_of(name))
                 steps[turns].setdefault(key, []).append(row)
         self._steps, self._turning = (

@@ -5,6 +5,8 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 
+import numpy as np
+
 from agentface.conventions import SIDES, Doubles
 from agentface.errors import UnknownNameError
 from agentface.motion.gestures.gesture import GestureForm
@@ -61,9 +63,10 @@ class GestureChannel:
         self._lags = dict(lags_s or {})
         self._places = {name: place for place, name in enumerate(self.names)}
         self._contracts = tuple(parameter(name).contracts for name in self.names)
+        self._whole = np.array(self._contracts, np.bool_)
+        self._adds = ~self._whole
         self._playing: list[_Playing] = []
         self._now = 0.0
-        self._levels = [0.0] * len(self.names)
         self._head = [0.0] * len(_MOVED)
 
     @property
@@ -121,13 +124,14 @@ class GestureChannel:
         self._head = [0.0] * len(_MOVED)
         if not self._playing:
             return False
-        levels = self._levels
-        levels[:] = [0.0] * len(levels)
+        levels = [0.0] * len(self.names)
+        values[self._whole] = 1.0
         for each in self._playing:
             if each.start < self._now:
                 self._add(each, levels)
-        values[:] = [1.0 if contracts else level for contracts, level in zip(self._contracts, levels, strict=True)]
-        weights[:] = [level if contracts else 1.0 for contracts, level in zip(self._contracts, levels, strict=True)]
+        shown = np.array(levels)
+        np.copyto(values, shown, where=self._adds)
+        np.copyto(weights, shown, where=self._whole)
         return True
 
     def _add(self, each: _Playing, levels: list[float]) -> None:
