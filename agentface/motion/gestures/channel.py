@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from agentface.conventions import SIDES, Doubles
+from agentface.conventions import Doubles
 from agentface.errors import UnknownNameError
 from agentface.motion.gestures.gesture import GestureForm
 from agentface.parameters import parameter
@@ -150,14 +150,3 @@ class GestureChannel:
         for number, each in enumerate(reversed(going), start=1):
             if each.gesture.name == begun.gesture.name or number >= MOST:
                 each.end(begun.start, LET_GO_S)
-
-
-def lag_sides(pairs: Sequence[str], lags_s: Mapping[str, float]) -> dict[str, float]:
-    """By parameter, how much later its side moves: of each pair the left is late by a positive lag, the right by a
-    negative one.
-    """
-    return {
-        f"{pair}_{side}": max(0.0, sign * lags_s[pair])
-        for pair in pairs
-        for side, sign in zip(SIDES, (1.0, -1.0), strict=True)
-    }
