@@ -37,7 +37,7 @@ class BlinkChannel:
     names = (*_CLOSER, *_LEVATOR)
 
     def __init__(self) -> None:
-        self.lags_s: tuple[float, float] = (0.0, 0.0)
+        self.lags_s: tuple[float, ...] = (0.0,) * len(SIDES)
         self._closure = Envelope(len(SIDES))
         self._now = 0.0
         self._asked: list[tuple[float, int, BlinkShape]] = []

@@ -25,6 +25,9 @@ TICK_S = 1.0 / 120.0
 TICKS = 5
 LAG_S = TICKS * TICK_S
 """So long after the intensities the contractions are where they go."""
+LATE = 4
+LATE_S = LATE * TICK_S
+"""So much later :attr:`Course.late` shows the same."""
 _NEARLY = 1e-6
 """Of a tick: sums of frame times are not exact."""
 _LIKE = 0.05
@@ -57,9 +60,10 @@ class Course:
         self._rules, self._intensities, self._pairs, self._held_back = rules, intensities, pairs, held_back
         self.settled = True
         self._turned = self._rewritten = False
-        self._states = np.zeros((TICKS, len(EMOTIONS)))
+        self._states = np.zeros((TICKS + LATE, len(EMOTIONS)))
         self._modes = ModeMean(TICK_S)
-        self._answers = np.zeros((TICKS, len(MUSCLES)))
+        self._answers = np.zeros((TICKS + LATE, len(MUSCLES)))
+        self._spline = np.zeros(TICKS)
         self._asked, self._start, self._target, self._shown = (np.zeros(len(MUSCLES)) for _ in range(4))
         self._late, self._late_from = np.zeros(len(MUSCLES)), 0.0
         self._origin = self._now = self._until = 0.0
@@ -71,6 +75,12 @@ class Course:
         if self._rewritten:
             self._aim()
         return None if self.settled and not self._target.any() else self._shown
+
+    @property
+    def late(self) -> Doubles:
+        """``(len(MUSCLES),)``, what they were ``LATE_S`` ago."""
+        late: Doubles = self._target if self.settled else self._spline @ self._answers[:TICKS]
+        return late
 
     def takes_over(self, now: float, places: npt.NDArray[np.intp], levels: Doubles) -> bool:
         """Whether other modes take over where the intensities at ``places`` go to ``levels``."""
@@ -112,8 +122,9 @@ class Course:
     def _ask(self, times: Doubles) -> None:
         """What the rules say at the newest ticks, less what pairs of muscles hold back."""
         states = self._intensities.at(times)[0]
-        modes = self._modes.means(times, self._rules.weights(states))[-TICKS:]
-        states, times = states[-TICKS:], times[-TICKS:]
+        kept = len(self._answers)
+        modes = self._modes.means(times, self._rules.weights(states))[-kept:]
+        states, times = states[-kept:], times[-kept:]
         asked = self._rules.course(states, modes)
         held = np.empty_like(asked)
         self._held_back(asked, self._start, self._target, self._pairs, held)
@@ -152,8 +163,10 @@ class Course:
     def _show(self) -> None:
         part = min(max((self._now - self._origin) / TICK_S - self._tick, 0.0), 1.0)
         old, new = 0.5 * (1.0 - part) ** 2, 0.5 * part**2
-        weights = np.array([old, 0.5 + part - part**2 + old, 1.0, 0.5 + part - part**2 + new, new]) / 3.0
-        self._shown = weights @ self._answers
+        self._spline[:] = old, 0.5 + part - part**2 + old, 1.0, 0.5 + part - part**2 + new, new
+        self._spline /= 3.0
+        newest = self._answers[LATE:]
+        self._shown = self._target if (newest == self._target).all() else self._spline @ newest
 
 
 def _push(ring: Doubles, rows: Doubles) -> None:

@@ -13,7 +13,7 @@ from agentface.emotion.envelopes import Envelopes, default_envelopes
 from agentface.emotion.state import EMOTIONS, EmotionState
 from agentface.motion.braking import SHORTEST_S
 from agentface.motion.conflicts import default_conflicts
-from agentface.motion.course import LAG_S, Course, EmotionRules
+from agentface.motion.course import LAG_S, LATE_S, Course, EmotionRules
 from agentface.motion.intensities import Intensities, trace_in_numpy
 from agentface.motion.modes import LONGEST_S
 from agentface.motion.pairs import Pairs, held_back_in_numpy
@@ -28,11 +28,12 @@ TAKING_OVER = 0.6
 class EmotionChannel:
     """Six intensities, each at its own pace, over a mood, and the contractions that the rules make of them.
 
-    Of these each side of the face makes its ``gains (COUNT,)``. Without ``envelopes`` and ``pairs``, those that come
-    with agentface.
+    Of these each side of the face makes its ``gains (COUNT,)``; by ``lags_s`` some parameters are late. Without
+    ``envelopes`` and ``pairs``, those that come with agentface.
 
     Attributes:
         mood: what the intensities return to.
+        apart: how much the two sides of a pair are out of step, 0, not at all, .. 1, as the lags say.
     """
 
     def __init__(
@@ -42,12 +43,14 @@ class EmotionChannel:
         *,
         envelopes: Envelopes | None = None,
         pairs: Pairs | None = None,
+        lags_s: Mapping[str, float] | None = None,
     ) -> None:
         self._envelopes = envelopes or default_envelopes()
         trace, held_back = _kernels() if rules.compiled else (trace_in_numpy, held_back_in_numpy)
         self._intensities = Intensities(self._envelopes, trace)
         self._course = Course(rules, self._intensities, pairs or default_conflicts().pairs, held_back)
         self.mood = EmotionState()
+        self.apart = 0.0
         self._now = 0.0
         self._shown = np.zeros(len(EMOTIONS), np.bool_)
         self._returns, self._next = np.full(len(EMOTIONS), math.inf), math.inf
@@ -56,6 +59,7 @@ class EmotionChannel:
         places = [(index, row) for row, muscle in enumerate(MUSCLES) for index in indices_of(muscle)]
         self.names = tuple(NAMES[index] for index, _ in places)
         self._rows = np.array([row for _, row in places])
+        self._lates = np.array([(lags_s or {}).get(name, 0.0) for name in self.names]) / LATE_S
         self._gains = (
             np.ones(len(places)) if gains is None else gains[[index for index, _ in places]].astype(np.float64)
         )
@@ -111,6 +115,8 @@ class EmotionChannel:
         if shown is None:
             return False
         np.take(shown, self._rows, out=values)
+        if self.apart > 0.0 and not self._course.settled:
+            values += self.apart * self._lates * (self._course.late[self._rows] - values)
         values *= self._gains
         return True
 

@@ -12,6 +12,7 @@ from pydantic import AfterValidator, Field
 
 from agentface.cache import prepared, stamp_of
 from agentface.config import Document, Table
+from agentface.motion.course import LATE_S
 from agentface.resources import rules_file
 
 STATES = ("idle", "listening", "thinking", "speaking")
@@ -136,7 +137,7 @@ class BeatFigures(Table):
 class SideFigures(Table):
     """How late one side may be."""
 
-    lag_s: Annotated[float, Field(ge=0, le=0.2)]
+    lag_s: Annotated[float, Field(ge=0, le=LATE_S)]
 
 
 class LifeTable(Table):

@@ -61,6 +61,7 @@ class GazeChannel(TurnChannel):
         self._head_for: tuple[float, ...] = ()
         self._joins_in, self._joins_at_once = math.inf, False
         self._turned: Point = (0.0, 0.0, 0.0)
+        self._is_told = False
         self.looks = 0
         """How often it was told to look elsewhere."""
 
@@ -128,6 +129,7 @@ class GazeChannel(TurnChannel):
 
     def advance(self, dt: float) -> None:
         """Let ``dt`` seconds pass."""
+        self._is_told = False
         if self._point is not None and tuple(self._head.angles.target.tolist()) != self._head_for:
             self._join(at_once=False)
         self.angles.advance(dt)
@@ -140,14 +142,16 @@ class GazeChannel(TurnChannel):
         self._joined.advance(dt)
 
     def head_is(self, yaw: float, pitch: float, roll: float) -> None:
-        """The head's angles as all channels together make them now."""
-        self._turned = (yaw, pitch, roll)
+        """The head's angles as all channels together make them now, before the eyes' are asked for."""
+        self._turned, self._is_told = (yaw, pitch, roll), True
 
     def write(self, values: Doubles, weights: Doubles) -> bool:
-        """The angles now, and what the head adds."""
-        if not self.steady and self.angles.resting and self._joined.resting:
+        """What the head adds, and the angles: steady eyes keep theirs until they are told how the head is turned."""
+        steady = self.steady
+        if not steady and self.angles.resting and self._joined.resting:
             return False
-        values[: len(self._eyes)] = self._shown()
+        if self._is_told or not steady:
+            values[: len(self._eyes)] = self._shown()
         values[len(self._eyes) :] = self._joined.value
         return True
 

@@ -20,19 +20,22 @@ from agentface.motion.emotion import EmotionChannel
 from agentface.motion.faps import FapChannel
 from agentface.motion.figures import LifeTable, default_life
 from agentface.motion.gaze import GazeChannel
-from agentface.motion.gestures.channel import GestureChannel, lag_sides
+from agentface.motion.gestures.channel import GestureChannel
 from agentface.motion.gestures.gesture import GestureForm
 from agentface.motion.gestures.table import all_gestures
 from agentface.motion.life.channel import LifeChannel
 from agentface.motion.muscles import MuscleChannel
 from agentface.motion.playing import PerformanceChannel
+from agentface.motion.sides import drawn_lags
 from agentface.motion.speech import SpeechChannel
 from agentface.motion.turns import TurnChannel
 from agentface.parameters import COUNT, HIGH, LOW, NEUTRAL, PARAMETERS, WAYS, FacePose, Way, parameter
 
 _Channel = TypeVar("_Channel", bound=Channel)
 _NEUTRAL, _LOW, _HIGH = (limits.astype(np.float64) for limits in (NEUTRAL, LOW, HIGH))
-_HEAD = [known.index for known in PARAMETERS if known.kind == "head"]
+_HEADS = [known.index for known in PARAMETERS if known.kind == "head"]
+_HEAD = slice(_HEADS[0], _HEADS[-1] + 1)
+_HEAD_LOW, _HEAD_HIGH = _LOW[_HEAD], _HIGH[_HEAD]
 
 
 class _Layer:
@@ -127,15 +130,21 @@ class Mixer(MutableMapping[str, Channel]):
         self._values: Doubles = np.zeros(COUNT)
         self._wanted: tuple[bytes, ...] | None = None
         self._pose = FacePose()
-        self.emotion = self._own("emotion", EmotionChannel(rules, gains, pairs=self._conflicts.pairs))
-        table, head, blink = life or default_life(), TurnChannel("head"), BlinkChannel()
+        table, random = life or default_life(), random or np.random.default_rng(0)
+        lags_s = drawn_lags(random, table.sides.lag_s)
+        emotion = EmotionChannel(rules, gains, pairs=self._conflicts.pairs, lags_s=lags_s)
+        self.emotion = self._own("emotion", emotion)
+        head, blink = TurnChannel("head"), BlinkChannel()
         self.gaze = self._own("gaze", GazeChannel(head, table))
         self.head = self._own("head", head)
         self.action_units = self._own("action_units", ActionUnitChannel())
         self.performance = self._own("performance", PerformanceChannel())
         self.faps = self._own("faps", FapChannel())
         self.speech = self._own("speech", SpeechChannel(compiled=compiled, yields=self._conflicts.yields))
-        self._live(table, random or np.random.default_rng(0), blink, all_gestures() if gestures is None else gestures)
+        gesturing = GestureChannel(all_gestures() if gestures is None else gestures, lags_s)
+        self.life = self._own("life", LifeChannel(table, random, self.gaze, blink, gesturing, lags_s))
+        self.gestures = self._own("gestures", gesturing)
+        self.gaze.movers = [self.life, self.gestures]
         self.blink = self._own("blink", blink)
         self.muscles = self._own("muscles", MuscleChannel())
         self._fixed = frozenset(self._layers)
@@ -174,12 +183,13 @@ class Mixer(MutableMapping[str, Channel]):
 
         Raises InvalidValueError for a channel that wants what is no finite number.
         """
+        self.emotion.apart = self.life.presence
         wants = [layer.write() for layer in self._layers.values()]
         values = self._values
         values[:] = _NEUTRAL
         _blend(self._turning, values, wants)
         if self.gaze.steady:
-            self.gaze.head_is(*np.minimum(np.maximum(values, _LOW), _HIGH)[_HEAD].tolist())
+            self.gaze.head_is(*np.minimum(np.maximum(values[_HEAD], _HEAD_LOW), _HEAD_HIGH).tolist())
             wants[self._gaze_layer] = self._layers["gaze"].write()
         wanted = tuple(wants)
         if wanted == self._wanted:
@@ -239,16 +249,6 @@ class Mixer(MutableMapping[str, Channel]):
     def __len__(self) -> int:
         return len(self._layers)
 
-    def _live(
-        self, table: LifeTable, random: np.random.Generator, blink: BlinkChannel, gestures: Mapping[str, GestureForm]
-    ) -> None:
-        pairs = sorted({pair for gesture in gestures.values() for pair in gesture.pairs})
-        lags = random.uniform(-table.sides.lag_s, table.sides.lag_s, len(pairs)).tolist()
-        gesturing = GestureChannel(gestures, lag_sides(pairs, dict(zip(pairs, lags, strict=True))))
-        self.life = self._own("life", LifeChannel(table, random, self.gaze, blink, gesturing))
-        self.gestures = self._own("gestures", gesturing)
-        self.gaze.movers = [self.life, self.gestures]
-
     def _own(self, name: str, channel: _Channel) -> _Channel:
         self._put(name, channel, self._conflicts.rank(name))
         return channel
@@ -271,7 +271,7 @@ class Mixer(MutableMapping[str, Channel]):
         layers = tuple(self._layers.values())
         for number, layer in enumerate(layers):
             for row, name in enumerate(layer.names):
-                turns = parameter(name).index in _HEAD
+                turns = parameter(name).index in _HEADS
                 key = (layer.rank.priority_of(name), number, layer.rank.way_of(name))
                 steps[turns].setdefault(key, []).append(row)
         self._steps, self._turning = (

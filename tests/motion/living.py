@@ -6,6 +6,10 @@ import numpy as np
 
 from agentface.conventions import Doubles
 from agentface.emotion.state import EMOTIONS
+<<<<<<< HEAD
+=======
+from agentface.motion.course import EmotionRules
+>>>>>>> 0188312 (One side of an emotion is late, too: by up to 30 ms where the face lives)
 from agentface.motion.mixer import Mixer
 from agentface.parameters import MUSCLES
 
@@ -13,7 +17,11 @@ from agentface.parameters import MUSCLES
 class NoRules:
     """A face that feels nothing."""
 
+<<<<<<< HEAD
     compiled = True
+=======
+    compiled = False
+>>>>>>> 0188312 (One side of an emotion is late, too: by up to 30 ms where the face lives)
 
     def weights(self, states):
         return np.zeros((len(states), len(EMOTIONS), len(EMOTIONS)))
@@ -22,9 +30,11 @@ class NoRules:
         return np.zeros((len(states), len(MUSCLES)))
 
 
-def channels(seed: int = 0, liveliness: float = 0.6, state: str | None = None) -> Mixer:
+def channels(
+    seed: int = 0, liveliness: float = 0.6, state: str | None = None, rules: EmotionRules | None = None
+) -> Mixer:
     """The channels of a face that has been as lively as this from its first moment."""
-    mixer = Mixer(NoRules(), random=np.random.default_rng(seed))
+    mixer = Mixer(rules or NoRules(), random=np.random.default_rng(seed))
     mixer.life.set_state(state)
     mixer.life.set_liveliness(liveliness, 0.0)
     return mixer

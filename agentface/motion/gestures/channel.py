@@ -5,7 +5,9 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 
-from agentface.conventions import SIDES, Doubles
+import numpy as np
+
+from agentface.conventions import Doubles
 from agentface.errors import UnknownNameError
 from agentface.motion.gestures.gesture import GestureForm
 from agentface.parameters import parameter
@@ -61,9 +63,10 @@ class GestureChannel:
         self._lags = dict(lags_s or {})
         self._places = {name: place for place, name in enumerate(self.names)}
         self._contracts = tuple(parameter(name).contracts for name in self.names)
+        self._whole = np.array(self._contracts, np.bool_)
+        self._adds = ~self._whole
         self._playing: list[_Playing] = []
         self._now = 0.0
-        self._levels = [0.0] * len(self.names)
         self._head = [0.0] * len(_MOVED)
 
     @property
@@ -121,13 +124,14 @@ class GestureChannel:
         self._head = [0.0] * len(_MOVED)
         if not self._playing:
             return False
-        levels = self._levels
-        levels[:] = [0.0] * len(levels)
+        levels = [0.0] * len(self.names)
+        values[self._whole] = 1.0
         for each in self._playing:
             if each.start < self._now:
                 self._add(each, levels)
-        values[:] = [1.0 if contracts else level for contracts, level in zip(self._contracts, levels, strict=True)]
-        weights[:] = [level if contracts else 1.0 for contracts, level in zip(self._contracts, levels, strict=True)]
+        shown = np.array(levels)
+        np.copyto(values, shown, where=self._adds)
+        np.copyto(weights, shown, where=self._whole)
         return True
 
     def _add(self, each: _Playing, levels: list[float]) -> None:
@@ -146,14 +150,3 @@ class GestureChannel:
         for number, each in enumerate(reversed(going), start=1):
             if each.gesture.name == begun.gesture.name or number >= MOST:
                 each.end(begun.start, LET_GO_S)
-
-
-def lag_sides(pairs: Sequence[str], lags_s: Mapping[str, float]) -> dict[str, float]:
-    """By parameter, how much later its side moves: of each pair the left is late by a positive lag, the right by a
-    negative one.
-    """
-    return {
-        f"{pair}_{side}": max(0.0, sign * lags_s[pair])
-        for pair in pairs
-        for side, sign in zip(SIDES, (1.0, -1.0), strict=True)
-    }

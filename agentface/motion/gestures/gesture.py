@@ -9,7 +9,7 @@ from typing import Self
 import numpy as np
 
 from agentface.conventions import Doubles
-from agentface.parameters import PARAMETERS, parameter
+from agentface.parameters import PARAMETERS
 
 _TURNS = tuple(known.name for known in PARAMETERS if known.kind == "gaze")
 
@@ -83,8 +83,3 @@ class GestureForm:
     def moves_eyes(self) -> bool:
         """Whether it says itself where the eyes turn."""
         return any(track.name in _TURNS for track in self.tracks)
-
-    @property
-    def pairs(self) -> tuple[str, ...]:
-        """The names without side of what it moves on either side."""
-        return tuple(dict.fromkeys(track.name[:-2] for track in self.tracks if parameter(track.name).partner))

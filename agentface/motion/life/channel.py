@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import heapq
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from itertools import count
 
 import numpy as np
@@ -32,6 +32,8 @@ class LifeChannel:
     All of it is a function of the channel's own time, the sum of the ``dt``: events stand at their own times, between
     frames, and each draws its random numbers when it happens. So the frames of any rate show the same motion.
 
+    By ``lags_s`` one side of a pair is late.
+
     Attributes:
         liveliness: 0, perfectly still, .. 1.
         head: how far it turns yaw and pitch of the head now, in radians, as :meth:`write` wrote it.
@@ -50,12 +52,16 @@ class LifeChannel:
         gaze: GazeChannel,
         blink: BlinkChannel,
         gestures: GestureChannel,
+        lags_s: Mapping[str, float],
     ) -> None:
         self._table, self._gaze, self._blink, self._gestures = table, gaze, blink, gestures
-        lags, waves, blinks, saccades, breath, habits, self._beats = random.spawn(7)
-        lag, self._nostril_lag = lags.uniform(-table.sides.lag_s, table.sides.lag_s, 2).tolist()
-        self._lags = (max(0.0, lag), max(0.0, -lag))
-        self._waves = self._bands(waves, float(lags.uniform(-table.sides.lag_s, table.sides.lag_s)))
+        waves, blinks, saccades, breath, habits, self._beats = random.spawn(6)
+        closer, nostrils, pupils = (
+            tuple(lags_s.get(f"{name}_{side}", 0.0) for side in SIDES)
+            for name in ("orbicularis_oculi_palpebralis", "nostril_flare", "pupil_dilation")
+        )
+        self._lids, self._nostrils = closer, nostrils
+        self._waves = self._bands(waves, pupils[1] - pupils[0])
         self._moved = np.zeros(7)
         self._blinks = Blinks(table, blink, blinks)
         self._saccades = Saccades(table.saccades, saccades)
@@ -71,6 +77,11 @@ class LifeChannel:
         self._numbers = count()
         self._levels = Envelope(4, [0.0, 0.0, 0.0, -1.0], [1.0, 1.0 / table.dial.natural, _WIDEST_SWAY, 1.0])
         self._levels.move([self._row.sway, self._row.pupils], 0.0, [_SWAY, _PUPILS])
+
+    @property
+    def presence(self) -> float:
+        """Whether it lives, 0, not at all, .. 1; in between while that changes."""
+        return float(self._levels.value[_PRESENCE])
 
     @property
     def state(self) -> str:
@@ -91,7 +102,7 @@ class LifeChannel:
         self.liveliness = liveliness
         self._levels.move([float(liveliness > 0.0), liveliness / natural], fade, [_PRESENCE, _MOVEMENT])
         lively = liveliness > 0.0
-        self._blink.lags_s = self._lags if lively else (0.0, 0.0)
+        self._blink.lags_s = self._lids if lively else (0.0,) * len(SIDES)
         self._gestures.lagging = lively
         if lively and not self._alive:
             self._alive = True
@@ -138,7 +149,7 @@ class LifeChannel:
             self._pass_to(due)
             self._happen(due)
         self._pass_to(end)
-        if self._alive and self.liveliness == 0.0 and self._levels.value[_PRESENCE] == 0.0:
+        if self._alive and self.liveliness == 0.0 and self.presence == 0.0:
             self._alive = False
             self._saccades.rest()
 
@@ -153,8 +164,8 @@ class LifeChannel:
         presence, movement, sway, wider = self._levels.value.tolist()
         yaw, pitch, roll, drift_yaw, drift_pitch, left, right = self._waves.at(self._now, self._moved).tolist()
         figures = self._table.breathing
-        full, air = self._breath.at(self._now - max(0.0, self._nostril_lag))
-        other_air = self._breath.at(self._now - max(0.0, -self._nostril_lag))[1]
+        full = self._breath.at(self._now)[0]
+        air, other_air = (self._breath.at(self._now - lag)[1] for lag in self._nostrils)
         eyes, head = self._saccades.eyes.value.tolist(), self._saccades.head.value.tolist()
         moved = presence * movement
         nostrils = moved * figures.nostrils

@@ -8,6 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from agentface import Face
+from agentface.emotion.inference import default_inference
 from agentface.motion.eyesight import Eyesight
 from agentface.motion.figures import STATES, default_life
 from agentface.parameters import HIGH, LOW, NAMES, FacePose, parameter
@@ -72,8 +73,10 @@ def head_places():
 
 def scripted(hz, seed=1):
     """A face that is told much, at times that all rates have; every sixth of a second."""
-    mixer, poses = channels(seed=seed), []
+    mixer, poses = channels(seed=seed, rules=default_inference()), []
     told = {
+        1: lambda: mixer.emotion.change({"happiness": 0.8}, 0.3, None),
+        4: lambda: mixer.emotion.change({"happiness": 0.1, "surprise": 0.9}, None, 0.5),
         2: lambda: mixer.life.set_state("listening"),
         5: lambda: mixer.gaze.look_at(SIGHT, (0.4, 0.1, 0.5), 0.06),
         7: lambda: mixer.life.beat(1.0, 0.31),
@@ -140,6 +143,25 @@ def test_the_sides_of_a_pair_are_never_in_exact_step_and_never_far_apart(seed):
         assert apart.max() > 0.0, left
         speed = np.abs(np.diff(one)).max() * 1000
         assert apart.max() <= 0.031 * speed + 1e-4, left
+
+
+def shown_smile(liveliness, seed=4):
+    mixer = channels(seed=seed, liveliness=liveliness, rules=default_inference())
+    mixer.emotion.change({"happiness": 0.8}, 0.4, None)
+    poses = trace(mixer, 0.7, 1000)
+    return [poses[:, parameter(f"zygomaticus_major_{side}").index] for side in "lr"]
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_one_side_of_a_smile_is_late_by_up_to_30_ms_where_the_face_lives(seed):
+    sides = shown_smile(0.6, seed)
+    half = [int(np.argmax(side > 0.5 * side[-1])) for side in sides]
+    assert 0 < abs(half[0] - half[1]) <= 31
+    assert sides[0][-1] == pytest.approx(sides[1][-1], abs=1e-6)
+    still = shown_smile(0.0, seed)
+    np.testing.assert_array_equal(still[0], still[1])
+    first = int(np.argmin(half))
+    np.testing.assert_allclose(sides[first], still[0], atol=1e-6)
 
 
 DEEDS = st.one_of(
