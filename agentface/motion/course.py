@@ -55,13 +55,18 @@ class Course:
     """
 
     def __init__(
-        self, rules: EmotionRules, intensities: Intensities, pairs: Pairs, held_back: Callable[..., None]
+        self,
+        rules: EmotionRules,
+        intensities: Intensities,
+        modes: ModeMean,
+        pairs: Pairs,
+        held_back: Callable[..., None],
     ) -> None:
-        self._rules, self._intensities, self._pairs, self._held_back = rules, intensities, pairs, held_back
+        self._rules, self._intensities, self._modes = rules, intensities, modes
+        self._pairs, self._held_back = pairs, held_back
         self.settled = True
         self._turned = self._rewritten = False
         self._states = np.zeros((TICKS + LATE, len(EMOTIONS)))
-        self._modes = ModeMean(TICK_S)
         self._answers = np.zeros((TICKS + LATE, len(MUSCLES)))
         self._spline = np.zeros(TICKS)
         self._asked, self._start, self._target, self._shown = (np.zeros(len(MUSCLES)) for _ in range(4))

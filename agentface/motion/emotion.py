@@ -13,9 +13,9 @@ from agentface.emotion.envelopes import Envelopes, default_envelopes
 from agentface.emotion.state import EMOTIONS, EmotionState
 from agentface.motion.braking import SHORTEST_S
 from agentface.motion.conflicts import default_conflicts
-from agentface.motion.course import LAG_S, LATE_S, Course, EmotionRules
+from agentface.motion.course import LAG_S, LATE_S, TICK_S, Course, EmotionRules
 from agentface.motion.intensities import Intensities, trace_in_numpy
-from agentface.motion.modes import LONGEST_S
+from agentface.motion.modes import LONGEST_S, ModeMean, mean_in_numpy
 from agentface.motion.pairs import Pairs, held_back_in_numpy
 from agentface.parameters import MUSCLES, NAMES, indices_of
 
@@ -46,9 +46,10 @@ class EmotionChannel:
         lags_s: Mapping[str, float] | None = None,
     ) -> None:
         self._envelopes = envelopes or default_envelopes()
-        trace, held_back = _kernels() if rules.compiled else (trace_in_numpy, held_back_in_numpy)
+        trace, mean, held_back = _kernels() if rules.compiled else (trace_in_numpy, mean_in_numpy, held_back_in_numpy)
         self._intensities = Intensities(self._envelopes, trace)
-        self._course = Course(rules, self._intensities, pairs or default_conflicts().pairs, held_back)
+        modes = ModeMean(TICK_S, mean)
+        self._course = Course(rules, self._intensities, modes, pairs or default_conflicts().pairs, held_back)
         self.mood = EmotionState()
         self.apart = 0.0
         self._now = 0.0
@@ -152,8 +153,9 @@ class EmotionChannel:
         return np.where(np.isnan(self._fades[places]), own, self._fades[places])
 
 
-def _kernels() -> tuple[Callable[..., None], Callable[..., None]]:
+def _kernels() -> tuple[Callable[..., None], Callable[..., None], Callable[..., None]]:
     from agentface.motion.intensities_compiled import trace
+    from agentface.motion.modes_compiled import mean
     from agentface.motion.pairs_compiled import held_back
 
-    return trace, held_back
+    return trace, mean, held_back

@@ -16,6 +16,7 @@ from agentface.emotion.ramps import KNOTS, exponential_onset
 from agentface.emotion.state import EMOTIONS, EmotionState
 from agentface.motion.course import LAG_S, TICK_S
 from agentface.motion.emotion import EmotionChannel
+from agentface.motion.mixer import Mixer
 from agentface.parameters import MUSCLES, NAMES, indices_of
 
 RIGHT = [NAMES[indices_of(muscle)[-1]] for muscle in MUSCLES]
@@ -73,6 +74,37 @@ def test_no_message_makes_a_speed_jump(script):
         speeds = np.diff(np.concatenate([before, run(channel, 3 * dt, dt)]), axis=0) / dt
         assert np.abs(np.diff(speeds, axis=0)).max() < 0.1
         channel.advance(seconds)
+
+
+OTHERS = st.one_of(
+    messages().map(lambda told: lambda mixer: tell(mixer.emotion, told)),
+    st.builds(
+        lambda name, value, fade: lambda mixer: mixer.muscles.set(name, value, fade),
+        st.sampled_from(MUSCLES),
+        st.floats(0, 1),
+        st.floats(0.05, 1.0),
+    ),
+    st.builds(lambda fade: lambda mixer: mixer.muscles.release(fade), st.floats(0.05, 1.0)),
+    st.builds(
+        lambda angle, fade: lambda mixer: mixer.head.turn((angle, -angle, 0.0), fade), *[st.floats(0.05, 0.7)] * 2
+    ),
+    st.builds(lambda fade: lambda mixer: mixer.release(fade), st.floats(0.05, 1.0)),
+)
+
+
+@given(st.lists(st.tuples(OTHERS, WAITS), min_size=1, max_size=6))
+def test_no_message_makes_a_speed_of_any_parameter_jump(script):
+    mixer, dt = Mixer(default_inference(), random=np.random.default_rng(0)), 1e-5
+    for ask, seconds in script:
+        poses = []
+        for step in range(6):
+            if step == 3:
+                ask(mixer)
+            mixer.advance(dt)
+            poses.append(mixer.pose().array.astype(np.float64))
+        speeds = np.diff(np.array(poses), axis=0) / dt  # of single precision: within 0.01
+        assert np.abs(np.diff(speeds, axis=0)).max() < 0.2
+        mixer.advance(seconds)
 
 
 @pytest.mark.slow

@@ -16,7 +16,7 @@ from agentface.motion.course import LAG_S
 from agentface.motion.emotion import EmotionChannel
 from agentface.motion.pairs import Pairs
 from agentface.parameters import MUSCLES, NAMES, indices_of
-from agentface.studies.figures.line_chart import Curve, LineChart
+from agentface.studies.figures.line_chart import ChartLine, LineChart
 from agentface.view.contact_sheet import png, sheet
 
 if TYPE_CHECKING:
@@ -73,14 +73,16 @@ def _envelopes() -> Image:
     gone = times - onset - envelopes.apex_s[place]
     rises = np.exp2(np.clip(times / (onset - LAG_S), 0.0, 1.0)) - 1.0
     falls = np.exp2(1.0 - np.clip(gone / (offset - LAG_S), 0.0, 1.0)) - 1.0
-    lines = [Curve(emotion, levels[:, number], number) for number, emotion in enumerate(EMOTIONS)]
-    return LineChart(times, [*lines, Curve("", np.where(gone < 0.0, rises, falls), 7, thin=True)], size=_SIZE).picture()
+    lines = [ChartLine(emotion, levels[:, number], number) for number, emotion in enumerate(EMOTIONS)]
+    return LineChart(
+        times, [*lines, ChartLine("", np.where(gone < 0.0, rises, falls), 7, thin=True)], size=_SIZE
+    ).picture()
 
 
 def _onset() -> Image:
     levels, contractions = course({0.0: lambda channel: channel.change({"happiness": 1.0}, None, None)}, 0.8)
     muscles = ("zygomaticus_major", "orbicularis_oculi_lateralis", "risorius", "jaw_open")
-    return _chart(0.8, contractions, muscles, [Curve("", levels[:, 0], 7, thin=True)])
+    return _chart(0.8, contractions, muscles, [ChartLine("", levels[:, 0], 7, thin=True)])
 
 
 def _change() -> Image:
@@ -90,7 +92,7 @@ def _change() -> Image:
     }
     _, contractions = course(scripts, 1.4)
     _, free = course(scripts, 1.4, _NONE)
-    thin = [Curve("", free[:, MUSCLES.index(name)], number, thin=True) for number, name in enumerate(_CORNERS)]
+    thin = [ChartLine("", free[:, MUSCLES.index(name)], number, thin=True) for number, name in enumerate(_CORNERS)]
     return _chart(1.4, contractions, _CORNERS, thin)
 
 
@@ -101,10 +103,10 @@ def _mood() -> Image:
     }
     levels, contractions = course(scripts, 3.2)
     muscles = ("zygomaticus_major", "depressor_anguli_oris", "nasalis", "levator_labii_superioris")
-    shown = [Curve("", levels[:, EMOTIONS.index(name)], 7, thin=True) for name in ("happiness", "disgust")]
+    shown = [ChartLine("", levels[:, EMOTIONS.index(name)], 7, thin=True) for name in ("happiness", "disgust")]
     return _chart(3.2, contractions, muscles, shown)
 
 
-def _chart(seconds: float, contractions: Doubles, muscles: tuple[str, ...], thin: list[Curve]) -> Image:
-    lines = [Curve(name, contractions[:, MUSCLES.index(name)], number) for number, name in enumerate(muscles)]
+def _chart(seconds: float, contractions: Doubles, muscles: tuple[str, ...], thin: list[ChartLine]) -> Image:
+    lines = [ChartLine(name, contractions[:, MUSCLES.index(name)], number) for number, name in enumerate(muscles)]
     return LineChart(_times(seconds), [*lines, *thin], size=_SIZE).picture()

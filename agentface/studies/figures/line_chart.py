@@ -35,7 +35,7 @@ _FAINT: Colour = (120, 120, 126)
 
 
 @dataclass(frozen=True)
-class Curve:
+class ChartLine:
     """Values ``(N,)`` at the times of its chart, in ``COLOURS[colour]``; a thin one is a reference."""
 
     name: str
@@ -49,7 +49,7 @@ class LineChart:
     """Lines over ``times (N,)`` in seconds, within ``low..high``; lines without a name are not in the legend."""
 
     times: Doubles
-    lines: Sequence[Curve]
+    lines: Sequence[ChartLine]
     low: float = 0.0
     high: float = 1.0
     size: tuple[int, int] = (560, 300)

@@ -7,7 +7,7 @@ from PIL import Image
 
 from agentface.emotion.inference import default_inference
 from agentface.studies.figures import envelopes
-from agentface.studies.figures.line_chart import COLOURS, Curve, LineChart
+from agentface.studies.figures.line_chart import COLOURS, ChartLine, LineChart
 
 
 def test_the_figure_shows_four_charts():
@@ -26,7 +26,7 @@ def test_a_face_is_told_things_at_their_times():
 
 def test_a_line_goes_from_its_first_value_to_its_last():
     times = np.linspace(0.0, 1.0, 50)
-    chart = LineChart(times, [Curve("rises", times, 2)], size=(400, 300))
+    chart = LineChart(times, [ChartLine("rises", times, 2)], size=(400, 300))
     red = np.abs(np.asarray(chart.picture(), int) - COLOURS[2]).sum(axis=2) < 60
     rows, columns = np.nonzero(red[40:])
     assert rows[columns == columns.min()].min() > rows[columns == columns.max()].max() + 150
