@@ -278,6 +278,7 @@ def test_many_threads_ask_and_nothing_is_lost(face):
     assert all(future.result(0) for future in futures)
 
 
+@pytest.mark.slow
 @given(st.lists(st.sampled_from(["say", "hush", "gesture", "play", "step", "cancel", "interrupt"]), max_size=25))
 def test_whatever_happens_each_future_is_resolved_once_and_each_text_told_once(script):
     with talking_face() as face:
