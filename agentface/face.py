@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from concurrent.futures import Future
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn, Self
@@ -18,7 +19,10 @@ from agentface.emotion.explanation import Explanation
 from agentface.emotion.inference import default_inference
 from agentface.emotion.state import EMOTIONS, NEUTRAL, EmotionState, canonical_or_neutral
 from agentface.errors import InvalidValueError
+from agentface.events.events import Events
+from agentface.events.twins import AwaitableTwins
 from agentface.head.model import HeadModel, load_model
+from agentface.motion.doing import Doing
 from agentface.motion.emotion import Hold
 from agentface.motion.gestures.table import all_gestures
 from agentface.motion.mixer import Mixer
@@ -68,7 +72,7 @@ class MessageCounts:
     errors: dict[str, int] = field(default_factory=lambda: dict.fromkeys(("malformed", "unknown", "rejected"), 0))
 
 
-class Face:
+class Face(AwaitableTwins):
     """A face that shows what it is told.
 
     Args:
@@ -109,6 +113,7 @@ class Face:
         self.message_counts = MessageCounts()
         self.noted: list[Callable[[Request], None]] = []
         """Called with every request after it was applied: who steps a face again later notes them here."""
+        self._events = Events(self)
         self._clock = clock or SystemClock()
         self._inference = default_inference(compiled=compiled)
         self.channels = Mixer(
@@ -130,15 +135,38 @@ class Face:
         self._stepped: tuple[FacePose, FaceGeometry | None] = (self.pose, None)
         self._frame_ms = 0.0
 
-    def apply(self, request: Request) -> None:
+    def apply(self, request: Request) -> Doing | None:
         """Do what is asked; every other way to ask something of a face ends here.
 
-        Raises what the request raises, and then nothing has changed.
+        Returns what goes on now, of what takes its time and has an end. Raises what the request raises, and then
+        nothing has changed.
         """
-        request.apply(self)
+        doing = request.apply(self)
         self._touch()
         for note in self.noted:
             note(request)
+        self._events.watch(request, doing)
+        return doing
+
+    def ask(self, request: Request) -> Future[bool]:
+        """Have a request applied by the next step, from any thread.
+
+        The future has what :meth:`apply` raises, or, when it is over, whether it came to its end. To cancel it takes
+        back what is not over yet.
+        """
+        return self._events.ask(request)
+
+    def on(self, event: str, call: Callable[[Any], object]) -> None:
+        """Call ``call``, after a step, whenever something is over; one of ``EVENTS``, raises UnknownNameError.
+
+        ``spoken``: a text that was said; ``hushed``: one that was cut short; ``failed``: what went wrong with one, an
+        AgentFaceError; ``gestured``: a gesture's name; ``played``: a performance.
+        """
+        self._events.on(event, call)
+
+    def off(self, event: str, call: Callable[[Any], object]) -> None:
+        """No longer call what was given to :meth:`on`."""
+        self._events.off(event, call)
 
     def set_emotion(
         self,
@@ -315,11 +343,13 @@ class Face:
         """
         dt = check_duration("dt", dt)
         start = self._clock.now()
+        self._events.take_in()
         self._advance(dt)
         self._touch()
         geometry = self._deformer.step(self.pose, dt)
         self._stepped = self.pose, geometry
         self._frame_ms = 1000.0 * (self._clock.now() - start)
+        self._events.settle()
         return geometry
 
     def warm_up(self) -> None:
@@ -438,6 +468,7 @@ class Face:
     def close(self) -> None:
         """Give back what the face has taken from the graphics driver, and end its voices. May be called twice."""
         self._closed = True
+        self._events.close()
         if self._talker is not None:
             self._talker.close()
         renderer, self._renderer = self._renderer, None

@@ -27,6 +27,7 @@ LAYERS = (
     ("arkit",),
     ("requests",),
     ("view", "talk"),
+    ("events",),
     ("face",),
     ("live",),
     ("io",),

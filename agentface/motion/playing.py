@@ -7,6 +7,7 @@ import math
 import numpy as np
 
 from agentface.conventions import Doubles, Floats
+from agentface.motion.doing import Doing
 from agentface.motion.envelope import Envelope
 from agentface.motion.performance import HOLD_S, LET_GO_S, Performance
 from agentface.parameters import COUNT, HIGH, LOW, NAMES
@@ -28,6 +29,7 @@ class PerformanceChannel:
 
     def __init__(self) -> None:
         self._performance: Performance | None = None
+        self._doing: Doing | None = None
         self._time = 0.0
         self._held = math.inf
         self._wanted = np.zeros((2, COUNT))
@@ -43,9 +45,11 @@ class PerformanceChannel:
         """How far into its performance it is; None without one."""
         return self._time if self._performance is not None else None
 
-    def play(self, performance: Performance, fade: float = 0.0, from_s: float = 0.0) -> None:
+    def play(self, performance: Performance, fade: float = 0.0, from_s: float = 0.0) -> Doing:
         """Play from ``from_s`` on, coming to it within ``fade`` seconds from what is shown now."""
         self._take_over(performance, math.inf, from_s, fade)
+        self._doing = Doing(begun=True)
+        return self._doing
 
     def show(self, values: Floats, weights: Floats, fade: float = 0.0) -> None:
         """Show one frame of a stream: ``(COUNT,)`` each, values within their ranges and weights 0..1."""
@@ -65,6 +69,7 @@ class PerformanceChannel:
         left = self._performance.duration_s - self._time if math.isinf(self._held) else self._held
         if dt > left + 1e-9:  # a frame at its end is still shown
             self._step(max(left, 0.0))
+            self._end(whole=True)
             self._take_over(None, math.inf, 0.0, LET_GO_S)
             dt -= max(left, 0.0)
         self._step(dt)
@@ -85,7 +90,13 @@ class PerformanceChannel:
         if self._performance is not None:
             self._wanted[:] = self._performance.sample(self._time)
 
+    def _end(self, *, whole: bool) -> None:
+        if self._doing is not None:
+            self._doing.end(whole=whole)
+            self._doing = None
+
     def _take_over(self, performance: Performance | None, held: float, from_s: float, fade: float) -> None:
+        self._end(whole=False)
         rest = self._rest.value.reshape(2, COUNT)
         shown = self._wanted + rest
         speed = self._speed(-_NEAR_S) + self._rest.velocity.reshape(2, COUNT)

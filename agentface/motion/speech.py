@@ -14,6 +14,7 @@ from agentface.conventions import Doubles
 from agentface.errors import UnknownNameError
 from agentface.kernel import can_compile
 from agentface.motion.conflicts import SpeechYields, default_conflicts
+from agentface.motion.doing import Doing
 from agentface.motion.envelope import Envelope
 from agentface.motion.utterance import Utterance
 from agentface.motion.yielding import Yielding
@@ -91,27 +92,29 @@ class SpeechChannel:
         interrupt: bool = False,
         live: bool = False,
         alphabet: str | None = None,
-    ) -> None:
+    ) -> Doing | None:
         """Say ``phones``, whose times count from ``start`` s after now, or after all that is said and waits before.
 
         With ``interrupt`` they are said at once, and what was said or waited is dropped. With ``live`` their times
         count from now whatever is said: what a live utterance would have said from the first of them on is replaced,
-        so that it grows, or is revised. Raises UnknownNameError for a phone or an alphabet, and then nothing happens.
+        so that it grows, or is revised. Returns what goes on now, if there is anything to say. Raises UnknownNameError
+        for a phone or an alphabet, and then nothing happens.
         """
         looks = self._table.looks([phone.symbol for phone in phones], alphabet)
         if not phones:
             if interrupt:
                 self.hush()
-            return
+            return None
         if live and not interrupt and self._current is not None and self._current.live:
             self._join(lambda current: current.revise(self._now + start, rate, phones, looks))
-            return
+            return self._current.doing
         utterance = Utterance(self.articulation, phones, looks, start, rate, loudness, live)
         if interrupt:
             self._drop()
         self._waiting.append(utterance)
         if self._current is None:
             self._begin_next()
+        return utterance.doing
 
     def hush(self) -> None:
         """Say no more; the mouth is back to what the face shows within ``HUSH_S``."""
@@ -221,8 +224,7 @@ class SpeechChannel:
             self._until[due] = math.inf
             self._visemes.move(0.0, VISEME_S, due)
         if self._current is not None and self._over(self._current) <= self._now:
-            self._current = None
-            self._tell_ended()
+            self._tell_ended(self._current, whole=True)
             self._begin_next()
         elif self._current is None and self._shown is not None and self._gone(self._shown) <= self._now:
             self._shown, self._hushed = None, math.inf
@@ -234,6 +236,8 @@ class SpeechChannel:
         self._visemes.advance(dt)
 
     def _begin_next(self) -> None:
+        while self._current is None and self._waiting and self._waiting[0].doing.outcome is not None:
+            self._tell_ended(self._waiting.popleft(), whole=False)  # taken back while it waited
         if self._current is not None or not self._waiting:
             return
         utterance = self._waiting.popleft()
@@ -263,12 +267,14 @@ class SpeechChannel:
 
     def _drop(self) -> None:
         """Forget what is said and what waits; what is shown stays."""
-        dropped = len(self._waiting) + (self._current is not None)
+        dropped = [*filter(None, [self._current]), *self._waiting]
         self._waiting.clear()
-        self._current = None
-        for _ in range(dropped):
-            self._tell_ended()
+        for utterance in dropped:
+            self._tell_ended(utterance, whole=False)
 
-    def _tell_ended(self) -> None:
+    def _tell_ended(self, utterance: Utterance, *, whole: bool) -> None:
+        utterance.doing.end(whole=whole)
+        if utterance is self._current:
+            self._current = None
         for call in tuple(self.ended):
             call()

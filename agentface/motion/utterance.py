@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
+from agentface.motion.doing import Doing
 from agentface.speech.alphabets import Looks
 from agentface.speech.articulation import Articulation, Timeline
 from agentface.speech.phones import Phone
@@ -27,6 +28,9 @@ class Utterance:
         rate: how many times as fast it is said.
         loudness: 1 for a usual voice.
         live: whether more may come.
+
+    Attributes:
+        doing: whether it waits, is said, or is over.
     """
 
     def __init__(
@@ -40,6 +44,7 @@ class Utterance:
         live: bool = False,
     ) -> None:
         self._articulation, self._loudness, self.live = articulation, loudness, live
+        self.doing = Doing()
         self._phones = [_moved(phone, start, rate) for phone in phones]
         self._looks = list(looks)
         self._began = 0.0
@@ -53,6 +58,7 @@ class Utterance:
     def begin(self, now: float) -> None:
         """It begins; ``now`` in s is the clock that all times from here on are on."""
         self._began = now
+        self.doing.begun = True
 
     def local(self, now: float) -> float:
         """A time of the clock on the utterance's timeline."""

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 from agentface.conventions import check_fraction
 from agentface.errors import InvalidValueError
+from agentface.motion.doing import Doing
 from agentface.motion.gestures.table import known_as
 from agentface.requests.request import Movable, Request
 
@@ -31,6 +32,6 @@ class Gesture(Request):
         """Each gesture by itself."""
         return type(self).__name__, self.name
 
-    def apply(self, face: Movable) -> None:
+    def apply(self, face: Movable) -> Doing:
         """Tell the gestures' channel."""
-        face.channels.gestures.play(self.name, self.strength)
+        return face.channels.gestures.play(self.name, self.strength)

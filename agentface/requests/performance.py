@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 from agentface.conventions import check_duration
 from agentface.errors import InvalidValueError
+from agentface.motion.doing import Doing
 from agentface.motion.performance import Performance
 from agentface.requests.request import Movable, Request
 
@@ -27,9 +28,9 @@ class Play(Request):
             raise InvalidValueError("performance", "a Performance or None", self.performance)
         self._keep(fade=check_duration("fade", self.fade))
 
-    def apply(self, face: Movable) -> None:
+    def apply(self, face: Movable) -> Doing | None:
         """Tell the performances' channel."""
         if self.performance is None:
             face.channels.performance.release(self.fade)
-        else:
-            face.channels.performance.play(self.performance, self.fade)
+            return None
+        return face.channels.performance.play(self.performance, self.fade)

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Protocol
 
 if TYPE_CHECKING:
     from agentface.head.model import HeadModel
+    from agentface.motion.doing import Doing
     from agentface.motion.mixer import Mixer
     from agentface.speech.speaker import Order
 
@@ -18,7 +19,7 @@ FADE_S = 0.25
 class Sayer(Protocol):
     """What has texts said."""
 
-    def say(self, text: str, order: Order, *, interrupt: bool = False) -> None:
+    def say(self, text: str, order: Order, *, interrupt: bool = False) -> Doing:
         """Say a text when its turn has come, or, with ``interrupt``, at once."""
 
 
@@ -53,8 +54,11 @@ class Request(ABC):
         return (type(self).__name__,)
 
     @abstractmethod
-    def apply(self, face: Movable) -> None:
-        """Tell the channels; called by ``Face.apply`` alone. What raises has changed nothing."""
+    def apply(self, face: Movable) -> Doing | None:
+        """Tell the channels; called by ``Face.apply`` alone. What raises has changed nothing.
+
+        Returns what goes on now, of a kind that takes its time and has an end.
+        """
 
     def _keep(self, **checked: object) -> None:
         for name, value in checked.items():

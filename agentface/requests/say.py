@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 from agentface.emotion.state import canonical_or_neutral
 from agentface.errors import InvalidValueError, UnknownNameError
+from agentface.motion.doing import Doing
 from agentface.requests.request import Movable, Request
 from agentface.speech.script import Script
 from agentface.speech.speaker import Order
@@ -46,10 +47,10 @@ class Say(Request):
         """Each text by itself."""
         return type(self).__name__, self.text
 
-    def apply(self, face: Movable) -> None:
+    def apply(self, face: Movable) -> Doing:
         """Tell the face's talker."""
         order = Order(script_of(self.text), self.voice, self.language, self.rate)
-        face.talker.say(self.text, order, interrupt=self.interrupt)
+        return face.talker.say(self.text, order, interrupt=self.interrupt)
 
 
 def script_of(text: str) -> Script:

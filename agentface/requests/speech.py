@@ -8,6 +8,7 @@ from typing import Any
 
 from agentface.conventions import check_duration, check_fraction, check_range
 from agentface.errors import InvalidValueError, UnknownNameError
+from agentface.motion.doing import Doing
 from agentface.requests.request import Movable, Request
 from agentface.speech.alphabets import phone_table
 from agentface.speech.phones import LONGEST_S, Phone, phones_of
@@ -77,9 +78,9 @@ class Speak(Request):
         """Each by itself: one does not stand for another."""
         return type(self).__name__, self
 
-    def apply(self, face: Movable) -> None:
+    def apply(self, face: Movable) -> Doing | None:
         """Tell the channel of speech."""
-        face.channels.speech.speak(
+        return face.channels.speech.speak(
             self.phones,
             start=self.start,
             rate=self.rate,

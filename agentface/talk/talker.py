@@ -14,6 +14,7 @@ from typing import Any, Protocol
 
 from agentface.emotion.state import NEUTRAL
 from agentface.errors import AgentFaceError, InvalidValueError
+from agentface.motion.doing import Doing
 from agentface.requests import Hush, Neutral, Request, SetEmotion, SetEmotions, Speak
 from agentface.speech.sound import Sound
 from agentface.speech.speaker import Done, Order, Speaker
@@ -59,14 +60,24 @@ class Talking(Protocol):
     def emotion(self) -> Mapping[str, float]:
         """Target intensities."""
 
-    def apply(self, request: Request) -> None:
+    def apply(self, request: Request) -> object:
         """Do what is asked."""
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class _Said:
+    """A text that is said or waits, who is to speak it, None when it is spoken, and what becomes of it."""
+
+    text: str
+    order: Order | None
+    doing: Doing
 
 
 @dataclass(frozen=True, slots=True)
 class _Turn:
-    """A sentence whose turn comes, None for one that failed, and whether its text ends with it."""
+    """A sentence of a text whose turn comes, None for one that failed, and whether its text ends with it."""
 
+    said: _Said
     spoken: Spoken | None
     last: bool
     interrupt: bool = False
@@ -100,7 +111,7 @@ class Talker:
         self._order = count()
         self._orders: deque[Order] = deque()
         self._turns: deque[_Turn] = deque()
-        self._texts: deque[str] = deque()
+        self._texts: deque[_Said] = deque()
         self._interrupt = self._own = False
         self._before: dict[str, float] = {}
         weakref.finalize(self, self._speaker.close)
@@ -108,7 +119,7 @@ class Talker:
     @property
     def texts(self) -> tuple[str, ...]:
         """What is being said and what waits."""
-        return tuple(self._texts)
+        return tuple(said.text for said in self._texts)
 
     @property
     def due_s(self) -> float:
@@ -117,15 +128,17 @@ class Talker:
         turn = self._free - LEAD_S if self._turns and self._free - LEAD_S > self._now + _SAME_S else math.inf
         return max(min(event, turn) - self._now, 0.0)
 
-    def say(self, text: str, order: Order, *, interrupt: bool = False) -> None:
+    def say(self, text: str, order: Order, *, interrupt: bool = False) -> Doing:
         """Say a text when its turn has come, or in place of all others; raises InvalidValueError when too many wait."""
-        self._admit(text, interrupt)
+        said = self._admit(text, order, interrupt)
         self._orders.append(order)
+        return said.doing
 
-    def perform(self, spoken: Spoken, *, interrupt: bool = False) -> None:
+    def perform(self, spoken: Spoken, *, interrupt: bool = False) -> Doing:
         """Say what is spoken already; likewise."""
-        self._admit(spoken.text, interrupt)
-        self._turns.append(_Turn(spoken, last=True, interrupt=self._take_interrupt()))
+        said = self._admit(spoken.text, None, interrupt)
+        self._turns.append(_Turn(said, spoken, last=True, interrupt=self._take_interrupt()))
+        return said.doing
 
     def wait(self) -> None:
         """Until all sentences are spoken that were asked for: nothing is late then, however the face is stepped."""
@@ -165,7 +178,9 @@ class Talker:
         self._orders.clear()
         self._turns.clear()
         self._events.clear()
-        self._texts.clear()
+        texts, self._texts = self._texts, deque()
+        for said in texts:
+            said.doing.end(whole=False)
         self._free = self._now
         self._let_go(_TAG_FADE_S)
         for tell in self.hushed:
@@ -179,32 +194,36 @@ class Talker:
         while self._orders:
             self._speaker.ask(self._orders.popleft())
 
-    def _admit(self, text: str, interrupt: bool) -> None:
+    def _admit(self, text: str, order: Order | None, interrupt: bool) -> _Said:
         if not interrupt and len(self._texts) >= MOST_TEXTS:
             raise InvalidValueError("text", f"at most {MOST_TEXTS} texts waiting", "one more", "send it later, or hush")
         if interrupt and self._texts:
             self.stop()
         self._interrupt |= interrupt
-        self._texts.append(text)
+        said = _Said(text, order, Doing())
+        self._texts.append(said)
+        return said
 
     def _take_interrupt(self) -> bool:
         interrupt, self._interrupt = self._interrupt, False
         return interrupt
 
     def _take(self, done: Done) -> None:
+        said = next(said for said in self._texts if said.order is done.order)
         if done.error is not None:
-            self.error = done.error
+            self.error = said.doing.error = done.error
             for tell in self.failed:
                 tell(done.error)
-        self._turns.append(_Turn(done.spoken, done.last, self._take_interrupt()))
+        self._turns.append(_Turn(said, done.spoken, done.last, self._take_interrupt()))
 
     def _begin(self, turn: _Turn) -> None:
         start = max(self._free, self._now + self.latency_s)
-        if turn.spoken is not None:
+        turn.said.doing.begun = True
+        if turn.spoken is not None and turn.said.doing.outcome is None:
             self._say(turn.spoken, start, turn.interrupt)
             self._free = start + turn.spoken.duration_s
         if turn.last:
-            self._at(self._free, self._end)
+            self._at(self._free, partial(self._end, turn.said))
 
     def _say(self, spoken: Spoken, start: float, interrupt: bool) -> None:
         in_s = start - self._now
@@ -229,11 +248,12 @@ class Talker:
     def _at(self, time: float, happens: Callable[[], None]) -> None:
         heappush(self._events, (time, next(self._order), happens))
 
-    def _end(self) -> None:
-        text = self._texts.popleft() if self._texts else ""
+    def _end(self, said: _Said) -> None:
+        self._texts.remove(said)
+        said.doing.end(whole=said.doing.error is None)
         self._let_go(_RETURN_S)
         for tell in self.ended:
-            tell(text)
+            tell(said.text)
 
     def _show(self, tag: Tag) -> None:
         """Show the emotion of a tag in place of those of the tags before it."""

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from agentface.emotion.state import EmotionState
-from agentface.errors import InvalidValueError, SpeechError
+from agentface.errors import InvalidValueError
 from agentface.requests import Hush, Neutral, SetEmotion, SetEmotions, Speak
 from agentface.requests.say import script_of
 from agentface.speech.phones import Phone
@@ -18,41 +18,15 @@ from agentface.speech.script import Script
 from agentface.speech.sound import Sound
 from agentface.speech.speaker import Order, Speaker
 from agentface.speech.spoken import Spoken, joined, speak_line, speak_script
-from agentface.speech.voices.voice import Voiced
 from agentface.talk.talker import LEAD_S, MOST_TEXTS, Talker
-
-RATE = 8000
-
-
-class Voice:
-    """A second for each sentence: a phone for its first letter; a word begins so many hundredths after the start."""
-
-    name = "fake"
-
-    def __init__(self):
-        self.said, self.closed, self.go = [], False, threading.Event()
-        self.go.set()
-
-    def speak(self, sentence, rate=1.0, marks=()):
-        assert self.go.wait(20)
-        if sentence.startswith("Bad"):
-            raise SpeechError("no")
-        if sentence.startswith("Worse"):
-            raise ZeroDivisionError("a bug")
-        self.said.append(sentence)
-        length = 1.0 / rate
-        sound = Sound(np.full(round(RATE * length), ord(sentence[0]), np.int16), RATE)
-        return Voiced(sound, (Phone(sentence[0].lower(), 0.0, length),), tuple(0.01 * mark for mark in marks))
-
-    def close(self):
-        self.closed = True
+from tests.voices import RATE, FakeVoice
 
 
 class Face:
     """Notes what it is asked, and when."""
 
     def __init__(self, voice=None):
-        self.voice = voice or Voice()
+        self.voice = voice or FakeVoice()
         self.speaker = Speaker(lambda _voice, _language, ours=self.voice: ours)
         self.talker = Talker(self, self.speaker)
         self.now, self.emotion, self.asked, self.mouth = 0.0, EmotionState.of(happiness=0.2), [], None
@@ -304,7 +278,7 @@ def test_a_face_that_is_gone_takes_its_voices_along():
 
 
 def test_a_closed_speaker_is_silent():
-    speaker = Speaker(lambda *_: Voice())
+    speaker = Speaker(lambda *_: FakeVoice())
     speaker.close()
     speaker.ask(Order(Script.of("One.")))
     speaker.wait()
@@ -313,7 +287,7 @@ def test_a_closed_speaker_is_silent():
 
 
 def test_parts_are_joined_to_the_sample():
-    voice = Voice()
+    voice = FakeVoice()
     script = script_of("[joy] Ah. Be it [sad] so. Ce.")
     whole = speak_script(voice, script)
     parts = [speak_line(voice, line) for line in script.lines]

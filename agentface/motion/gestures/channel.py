@@ -9,6 +9,7 @@ import numpy as np
 
 from agentface.conventions import Doubles
 from agentface.errors import UnknownNameError
+from agentface.motion.doing import Doing
 from agentface.motion.gestures.gesture import GestureForm
 from agentface.parameters import parameter
 
@@ -26,9 +27,11 @@ class _Playing:
         self.gesture, self.start, self.strength, self.lags = gesture, start, strength, lags
         self.over = start + gesture.length_s + max(lags, default=0.0)
         self._ends, self._fade = math.inf, 1.0
+        self.doing = Doing(begun=True)
 
     def end(self, now: float, fade: float) -> None:
         """Let go within ``fade`` seconds."""
+        self.doing.end(whole=False)
         if now <= self.start or fade <= 0.0:
             self.over = now  # nothing of it was shown
         elif math.isinf(self._ends):
@@ -79,7 +82,7 @@ class GestureChannel:
         """The names of those that go on, the oldest first."""
         return tuple(each.gesture.name for each in self._playing if each.start <= self._now)
 
-    def play(self, name: str, strength: float = 1.0, in_s: float = 0.0) -> None:
+    def play(self, name: str, strength: float = 1.0, in_s: float = 0.0) -> Doing:
         """Begin a gesture ``in_s`` seconds from now, at ``strength`` 0..1; raises UnknownNameError.
 
         One of the same name that goes on then ends.
@@ -88,8 +91,10 @@ class GestureChannel:
             raise UnknownNameError("gesture", name, tuple(self.gestures))
         gesture = self.gestures[name]
         lags = [self._lags.get(track.name, 0.0) if self.lagging else 0.0 for track in gesture.tracks]
-        self._playing.append(_Playing(gesture, self._now + in_s, strength, lags))
+        asked = _Playing(gesture, self._now + in_s, strength, lags)
+        self._playing.append(asked)
         self._playing.sort(key=lambda each: each.start)
+        return asked.doing
 
     def advance(self, dt: float) -> None:
         """Let ``dt`` seconds pass."""
@@ -99,6 +104,9 @@ class GestureChannel:
         for place, each in enumerate(self._playing):
             if before <= each.start < self._now:
                 self._give_way(place, each)
+        for each in self._playing:
+            if each.over <= self._now:
+                each.doing.end(whole=True)
         self._playing = [each for each in self._playing if each.over > self._now]
 
     def release(self, fade: float) -> None:

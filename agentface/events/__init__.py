@@ -1,0 +1,1 @@
+"""What a program is told of a face, and how it waits for it."""

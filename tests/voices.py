@@ -1,0 +1,64 @@
+"""A voice that says nothing, and faces that have it and cost little a step."""
+
+from __future__ import annotations
+
+import threading
+
+import numpy as np
+
+from agentface import Face
+from agentface.errors import SpeechError
+from agentface.speech.phones import Phone
+from agentface.speech.sound import Sound
+from agentface.speech.speaker import Speaker
+from agentface.speech.voices.voice import Voiced
+from agentface.talk.talker import Talker
+from tests.heads import head_model
+
+RATE = 8000
+
+
+class FakeVoice:
+    """A second for each sentence: a phone for its first letter; a word begins so many hundredths after the start."""
+
+    name = "fake"
+
+    def __init__(self):
+        self.said, self.closed, self.go = [], False, threading.Event()
+        self.go.set()
+
+    def speak(self, sentence, rate=1.0, marks=()):
+        assert self.go.wait(20)
+        if sentence.startswith("Bad"):
+            raise SpeechError("no")
+        if sentence.startswith("Worse"):
+            raise ZeroDivisionError("a bug")
+        self.said.append(sentence)
+        length = 1.0 / rate
+        sound = Sound(np.full(round(RATE * length), ord(sentence[0]), np.int16), RATE)
+        return Voiced(sound, (Phone(sentence[0].lower(), 0.0, length),), tuple(0.01 * mark for mark in marks))
+
+    def close(self):
+        self.closed = True
+
+
+class Still:
+    """A deformer whose skin never moves."""
+
+    def __init__(self, deformer, pose):
+        self._geometry = deformer.at(pose).copy()
+
+    def step(self, pose, dt):
+        return self._geometry
+
+    def at(self, pose):
+        return self._geometry
+
+
+def talking_face(voice=None, model=None, **options):
+    """A face with such a voice, whose skin stays as it is."""
+    face, voice = Face(model or head_model(), compiled=False, **options), voice or FakeVoice()
+    face.take_deformer(Still(face.deformer, face.pose))
+    face._talker = Talker(face, Speaker(lambda *_: voice))
+    face.noted.append(face._talker.notice)
+    return face
