@@ -6,10 +6,7 @@ import numpy as np
 
 from agentface.conventions import Doubles
 from agentface.emotion.state import EMOTIONS
-<<<<<<< HEAD
-=======
 from agentface.motion.course import EmotionRules
->>>>>>> 0188312 (One side of an emotion is late, too: by up to 30 ms where the face lives)
 from agentface.motion.mixer import Mixer
 from agentface.parameters import MUSCLES
 
@@ -17,11 +14,7 @@ from agentface.parameters import MUSCLES
 class NoRules:
     """A face that feels nothing."""
 
-<<<<<<< HEAD
     compiled = True
-=======
-    compiled = False
->>>>>>> 0188312 (One side of an emotion is late, too: by up to 30 ms where the face lives)
 
     def weights(self, states):
         return np.zeros((len(states), len(EMOTIONS), len(EMOTIONS)))
