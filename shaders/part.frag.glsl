@@ -11,6 +11,7 @@ centroid in vec3 reach;    // of the surroundings' light and the key light what 
 out vec4 colour;
 
 uniform vec3 teeth;
+uniform float mouth_pursed;   // how much narrower than at rest the mouth is, 1 from a tenth on
 uniform float shaded;   // how much less light the lower jaw gets, in the lips' shadow
 
 const vec3 GUM = vec3(0.46, 0.20, 0.185), TONGUE = vec3(0.40, 0.15, 0.145);
@@ -51,7 +52,7 @@ void main() {
     }
     gloss += sky_part * hemisphere(reflect(-view, n)) * fresnel(0.045, n_v) * 0.8;
     float back = 0.07 + exp(-max(reach.z - 0.014, 0.0) / 0.016);   // it is dark in the throat
-    // lips put forward shade the teeth behind them, and colour what reaches these
-    albedo *= mix(vec3(1.0), BEHIND_LIPS, enamelled * smoothstep(0.0115, 0.0165, reach.z));
+    // pursed lips shade the teeth behind them, and colour what reaches these
+    albedo *= mix(vec3(1.0), BEHIND_LIPS, enamelled * mouth_pursed * smoothstep(0.0095, 0.0145, reach.z));
     colour = vec4(finish((1.0 - shaded * inside) * (albedo * light * mix(back, 1.0, 0.25 * enamelled) + gloss * back)), 1.0);
 }

@@ -179,6 +179,6 @@ def test_every_fault_of_the_visemes_is_told(tmp_path):
     path.write_text(text)
     assert [fault.where for fault in faults_of(path)] == ["visemes.15"]
     path.write_text(text[: text.index("  15:")] + text[text.index("\n# Visemes that are") :])
-    told = {fault.where: fault for fault in faults_of(path)}
+    told = {fault.where: fault for fault in reversed(faults_of(path))}
     assert set(told) == {"visemes", "visemes.10.parameters.jaw_opens", "visemes.11.parameters.risorius"}
     assert "jaw_open" in told["visemes.10.parameters.jaw_opens"].hint

@@ -15,6 +15,7 @@ from agentface.view.parts.teeth import crown_places
 
 _SHADED = 0.25  # of the light on the lower jaw, which the upper lip and the nose keep off
 _COLUMNS = np.linspace(0.2, 0.8, 7)  # where the gap is looked at: parts of the way from corner to corner
+_PURSED = 0.1  # of the mouth's width at rest, by which it is narrower where it is all pursed
 _MIDDLE = len(_COLUMNS) // 2
 
 
@@ -33,6 +34,7 @@ class Mouth:
         )
         self._bow = 1.0 - (2.0 * _COLUMNS - 1.0) ** 2  # an opening between two bows
         self._at_rest = self._gap(*self._edges(model.vertices))
+        self._half_at_rest = self._half(model.vertices)
 
     def draw(self, geometry: FaceGeometry) -> None:
         """Draw it as ``geometry`` has it."""
@@ -46,7 +48,7 @@ class Mouth:
     def opening(self, geometry: FaceGeometry) -> dict[str, object]:
         """The uniforms of ``shaders/mouth.glsl``."""
         vertices = geometry.vertices
-        half = 0.5 * float(vertices[self._corners[0], 0] - vertices[self._corners[1], 0])
+        half = self._half(vertices)
         front = 0.5 * float(vertices[self._upper[0], 2].mean() + vertices[self._lower[0], 2].mean())
         corner = vertices[list(self._corners), 1:].mean(0)
         upper, lower = self._edges(vertices)
@@ -54,8 +56,12 @@ class Mouth:
         return {
             "mouth_light": self._light(gap),
             "mouth_opening": (middle + 0.5 * gap, middle - 0.5 * gap, abs(half), front),
+            "mouth_pursed": min(max((1.0 - half / self._half_at_rest) / _PURSED, 0.0), 1.0),
             "mouth_bow": (front - float(corner[1]), float(corner[0]) - middle),
         }
+
+    def _half(self, vertices: Floats) -> float:
+        return 0.5 * float(vertices[self._corners[0], 0] - vertices[self._corners[1], 0])
 
     def _edges(self, vertices: Floats) -> tuple[Floats, Floats]:
         """Heights of the lips' edges by column, m: of the rings that may touch, where least light comes through."""
