@@ -19,7 +19,10 @@ RATE = 8000
 
 
 class FakeVoice:
-    """A second for each sentence: a phone for its first letter; a word begins so many hundredths after the start."""
+    """A second for each sentence: a phone for its first letter; a word begins so many hundredths after the start.
+
+    Of a sentence that begins with a 9 the mouth does not know the phone.
+    """
 
     name = "fake"
 
@@ -36,7 +39,8 @@ class FakeVoice:
         self.said.append(sentence)
         length = 1.0 / rate
         sound = Sound(np.full(round(RATE * length), ord(sentence[0]), np.int16), RATE)
-        return Voiced(sound, (Phone(sentence[0].lower(), 0.0, length),), tuple(0.01 * mark for mark in marks))
+        symbol = sentence[0].lower().replace("9", "%%")
+        return Voiced(sound, (Phone(symbol, 0.0, length),), tuple(0.01 * mark for mark in marks))
 
     def close(self):
         self.closed = True

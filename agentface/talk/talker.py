@@ -211,27 +211,34 @@ class Talker:
     def _take(self, done: Done) -> None:
         said = next(said for said in self._texts if said.order is done.order)
         if done.error is not None:
-            self.error = said.doing.error = done.error
-            for tell in self.failed:
-                tell(done.error)
+            self._fail(said, done.error)
         self._turns.append(_Turn(said, done.spoken, done.last, self._take_interrupt()))
 
     def _begin(self, turn: _Turn) -> None:
         start = max(self._free, self._now + self.latency_s)
         turn.said.doing.begun = True
         if turn.spoken is not None and turn.said.doing.outcome is None:
-            self._say(turn.spoken, start, turn.interrupt)
+            self._say(turn.said, turn.spoken, start, turn.interrupt)
             self._free = start + turn.spoken.duration_s
         if turn.last:
             self._at(self._free, partial(self._end, turn.said))
 
-    def _say(self, spoken: Spoken, start: float, interrupt: bool) -> None:
+    def _say(self, said: _Said, spoken: Spoken, start: float, interrupt: bool) -> None:
         in_s = start - self._now
-        self._ask(Speak(spoken.phones, in_s, interrupt=interrupt, live=True))
+        try:
+            self._ask(Speak(spoken.phones, in_s, interrupt=interrupt, live=True))
+        except AgentFaceError as error:  # phones of a voice that the mouth does not know
+            self._fail(said, error)
+            return
         for at, tag in spoken.tags:
             self._at(start + at, partial(self._show, tag))
         for tell in self.heard:
             tell(spoken.sound, in_s - self.latency_s)
+
+    def _fail(self, said: _Said, error: AgentFaceError) -> None:
+        self.error = said.doing.error = error
+        for tell in self.failed:
+            tell(error)
 
     def _ask(self, request: Request) -> None:
         self._own = True

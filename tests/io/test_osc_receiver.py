@@ -13,8 +13,11 @@ from agentface.io.osc.codec import decode
 from agentface.io.osc.receiver import ANSWERS_A_SECOND, ANSWERS_AT_ONCE, Receiver
 from agentface.io.osc.schedule import FURTHEST_S, MOST
 from agentface.requests import SetMuscle
+from agentface.speech.speaker import Speaker
+from agentface.talk.talker import Talker
 from tests.clocks import ManualClock
 from tests.heads import head_model
+from tests.voices import FakeVoice
 
 ME = ("127.0.0.1", 1)
 
@@ -506,3 +509,22 @@ def test_the_status_is_limited_over_all_senders(desk):
     desk.receiver.take([(message("/agentface/status"), ("10.0.0.1", port)) for port in range(1000)])
     assert len(desk.said()) == ANSWERS_AT_ONCE
     assert desk.face.message_counts.messages == 1000
+
+
+def test_a_voice_that_fails_later_is_answered_to_who_had_it_speak(desk):
+    voice = FakeVoice()
+    desk.face._talker = Talker(desk.face, Speaker(lambda *_: voice))
+    desk.take(message("/agentface/say", "s", "Bad."), sender=("127.0.0.1", 2))
+    desk.take(message("/agentface/say", "s", "Good."))
+    assert desk.said() == []
+    desk.face.talker.wait()
+    desk.face.step(0.0)
+    desk.take()
+    assert [sender for _, sender in desk.answers] == [("127.0.0.1", 2)]
+    answer = desk.said()[0]
+    assert (answer.address, answer.arguments[0]) == ("/agentface/error", "/agentface/say")
+    assert "no" in answer.arguments[1]
+    assert desk.face.message_counts.errors["rejected"] == 1
+    assert desk.face.message_counts.messages == 1
+    desk.take()
+    assert desk.said() == []

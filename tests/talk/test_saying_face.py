@@ -5,12 +5,19 @@ import weakref
 
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
-from agentface import Face
+from agentface import EmotionState, Face
 from agentface.live.notes import Replay
 from agentface.parameters import NAMES
 from agentface.requests import Hush, Say, SetEmotion, Speak
+from agentface.speech.phones import Phone
+from agentface.speech.sound import Sound
+from agentface.speech.speaker import Speaker
 from agentface.speech.voices.flite import Flite
+from agentface.speech.voices.voice import Voiced
+from agentface.talk.talker import Talker
 from tests.heads import head_model
 from tests.tools import require
 
@@ -102,6 +109,63 @@ def test_say_waits_for_speak_and_interrupts_it(face):
     face.say("No.", interrupt=True, wait=True)
     motion(face, 0.1, 0.05)
     assert face.channels.speech.status["ends_in_s"] < 2.0
+
+
+class Quick:
+    """A voice of a tenth of a second a letter."""
+
+    name = "quick"
+
+    def speak(self, sentence, rate=1.0, marks=()):
+        letters = [letter.lower() for letter in sentence if letter.isalpha()]
+        phones = tuple(
+            Phone("aa" if letter in "aeiou" else "m", 0.1 * n, 0.1 * n + 0.1) for n, letter in enumerate(letters)
+        )
+        sound = Sound(np.zeros(800 * len(letters), np.int16), 8000)
+        return Voiced(sound, phones, tuple(0.1 * min(mark, len(letters)) for mark in marks))
+
+    def close(self):
+        pass
+
+
+ASKED = st.one_of(
+    st.tuples(
+        st.just("say"), st.sampled_from(["Ma.", "[joy] Aha! [sad] Mama.", "[neutral] Oh [fear:0.3]"]), st.booleans()
+    ),
+    st.tuples(st.just("speak"), st.booleans(), st.booleans()),
+    st.tuples(st.sampled_from(["hush", "neutral"])),
+    st.tuples(st.just("step"), st.floats(0.0, 0.7)),
+)
+
+
+@settings(deadline=None, max_examples=40)
+@given(plan=st.lists(ASKED, max_size=12))
+def test_whatever_it_is_told_in_the_end_it_is_silent_and_as_before(plan):
+    face = Face(head_model(), compiled=False)
+    face._talker = Talker(face, Speaker(lambda *_: Quick()))
+    face.noted.append(face._talker.notice)
+    failed = []
+    face.talker.failed.append(failed.append)
+    for word, *rest in plan:
+        if word == "say":
+            face.say(rest[0], interrupt=rest[1], wait=True)
+        elif word == "speak":
+            face.speak([("aa", 0.0, 0.3)], interrupt=rest[0], live=rest[1])
+        elif word == "step":
+            face._advance(rest[0])
+        else:
+            getattr(face, word)()
+    for _ in range(400):
+        if not (face.talker.texts or face.channels.speech.status):
+            break
+        face._advance(0.25)
+    face._advance(3.0)
+    assert not failed
+    assert face.talker.texts == ()
+    assert face.channels.speech.status is None
+    assert face.emotion == EmotionState()
+    assert face.talker.due_s == np.inf
+    face.close()
 
 
 def test_a_face_that_is_dropped_or_closed_leaves_no_thread():

@@ -249,6 +249,18 @@ def test_what_goes_wrong_is_told_and_ends_its_text_alone(face, text, said):
     assert face.spoken[-1][1] == "f"
 
 
+def test_phones_that_the_mouth_does_not_know_are_told_and_stop_nothing(face):
+    failed, heard = [], []
+    face.talker.failed.append(failed.append)
+    face.talker.heard.append(lambda sound, in_s: heard.append(in_s))
+    face.say("9 lives. One.")
+    ready(face)
+    face.run(3.0)
+    assert len(failed) == len(heard) == 1
+    assert face.spoken == [(1.0, "o")]
+    assert face.talker.texts == ()
+
+
 def test_texts_that_wait_are_limited(face):
     face.voice.go.clear()
     for _ in range(MOST_TEXTS):

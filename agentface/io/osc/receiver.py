@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections import deque
 from collections.abc import Callable, Hashable, Iterable, Mapping
 from typing import Any, TypeAlias
 
@@ -13,6 +14,7 @@ from agentface.io.osc.addresses import ERROR, PREFIX, STATUS, Addresses, check_i
 from agentface.io.osc.codec import MalformedError, Message, address_of, decode, encode
 from agentface.io.osc.rate_limit import RateLimit
 from agentface.io.osc.schedule import FURTHEST_S, MOST, Schedule, Sender, Waiting
+from agentface.motion.doing import Doing
 
 ANSWERS_AT_ONCE, ANSWERS_A_SECOND = 200.0, 100.0
 MOST_FACES = 8
@@ -40,11 +42,14 @@ class Receiver:
         self.addresses = Addresses(*self._faces)
         self._reply, self._clock = reply, clock
         self._schedule = Schedule()
+        self._begun: deque[tuple[str, Waiting, Doing]] = deque(maxlen=MOST)
         self._errors = RateLimit(clock, ANSWERS_AT_ONCE, ANSWERS_A_SECOND)
         self._statuses = RateLimit(clock, ANSWERS_AT_ONCE, ANSWERS_A_SECOND)
 
     def take(self, datagrams: Iterable[tuple[bytes, Sender]]) -> None:
         """Take in datagrams and what has come due; then answer those who asked for the status."""
+        if self._begun:
+            self._follow()
         newest: _Newest = {}
         askers: dict[tuple[Sender, str], None] = {}
         for waiting in self._schedule.due(self._clock.date()):
@@ -106,11 +111,26 @@ class Receiver:
 
     def _apply(self, face: str, waiting: Waiting) -> None:
         try:
-            self._faces[face].apply(waiting.request)
+            doing = self._faces[face].apply(waiting.request)
         except AgentFaceError as error:  # what only this face can tell, such as a point behind its eyes
-            self._faces[face].message_counts.messages -= 1
-            address = self.addresses.for_one(waiting.address, face) if self._several else waiting.address
-            self._refuse("rejected", (face,), waiting.sender, address, *reason_and_hint(error))
+            self._refuse_one(face, waiting, error)
+        else:
+            if isinstance(doing, Doing):
+                self._begun.append((face, waiting, doing))
+
+    def _follow(self) -> None:
+        """Tell the senders of what takes its time what went wrong with it meanwhile, such as a missing voice."""
+        begun, self._begun = self._begun, deque(maxlen=MOST)
+        for face, waiting, doing in begun:
+            if doing.error is not None:
+                self._refuse_one(face, waiting, doing.error)
+            elif doing.outcome is None:
+                self._begun.append((face, waiting, doing))
+
+    def _refuse_one(self, face: str, waiting: Waiting, error: AgentFaceError) -> None:
+        self._faces[face].message_counts.messages -= 1
+        address = self.addresses.for_one(waiting.address, face) if self._several else waiting.address
+        self._refuse("rejected", (face,), waiting.sender, address, *reason_and_hint(error))
 
     def _refuse(self, kind: str, faces: Iterable[str], sender: Sender, address: str, reason: str, hint: str) -> None:
         self._count(kind, faces)
