@@ -29,7 +29,7 @@ LAYERS = (
     ("view", "talk"),
     ("events",),
     ("face",),
-    ("live",),
+    ("live", "agents"),
     ("io",),
     ("window",),
     ("studies",),

@@ -113,6 +113,7 @@ def _faults_in(read: Callable[[], object]) -> list[Fault]:
 
 
 def _rule_readers() -> dict[str, _Loader]:
+    from agentface.agents.faces import load_faces
     from agentface.emotion.envelopes import load_envelopes
     from agentface.emotion.tables import load_blends, load_emotions
     from agentface.emotion.vocabularies import load_vocabularies
@@ -128,6 +129,7 @@ def _rule_readers() -> dict[str, _Loader]:
         "emotions.yaml": load_emotions,
         "blends.yaml": load_blends,
         "action_units.yaml": load_action_units,
+        "agents.yaml": load_faces,
         "conflicts.yaml": load_conflicts,
         "envelopes.yaml": load_envelopes,
         "faps.yaml": load_faps,

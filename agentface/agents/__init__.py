@@ -1,0 +1,1 @@
+"""What agent kits call a face by."""
