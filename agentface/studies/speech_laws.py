@@ -25,6 +25,7 @@ LIPS_SHUT, LIP_BITTEN = ("p", "b", "m"), ("f", "v")
 OPEN_VOWELS = ("aa", "ae", "ah", "ao")
 _FINER = 12
 """So many times within each p, b and m the gap is looked at, to tell how long it is shut."""
+_EVEN = 500
 _LAG_S, _LONG_S = 0.06, 0.07
 _LEAD_S, _REST_S, _SILENCE_S = 0.3, 0.2, 1.0
 
@@ -211,9 +212,9 @@ def _bitten(phones: Iterable[Phone], times: Doubles) -> Doubles:
 
 
 def _share(times: Doubles, gaps: Doubles) -> float:
-    """For how much of the times the lips are shut."""
-    shut = (gaps <= SHUT_MM).astype(np.float64)
-    return float(np.trapezoid(shut, times) / (times[-1] - times[0])) if times[-1] > times[0] else float(shut.mean())
+    """For how much of the times the lips are shut, as the gap goes straight from one to the next."""
+    even = np.linspace(times[0], times[-1], _EVEN)
+    return float((np.interp(even, times, gaps) <= SHUT_MM).mean())
 
 
 def _lag(phone: Phone, times: Doubles, jaw: Doubles) -> float:
