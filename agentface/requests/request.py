@@ -7,6 +7,7 @@ from collections.abc import Hashable
 from typing import TYPE_CHECKING, Protocol
 
 if TYPE_CHECKING:
+    from agentface.bml.block import Block
     from agentface.head.model import HeadModel
     from agentface.motion.mixer import Mixer
     from agentface.speech.speaker import Order
@@ -20,6 +21,13 @@ class Sayer(Protocol):
 
     def say(self, text: str, order: Order, *, interrupt: bool = False) -> None:
         """Say a text when its turn has come, or, with ``interrupt``, at once."""
+
+
+class PlaysBlocks(Protocol):
+    """What has BML blocks played."""
+
+    def play(self, block: Block) -> None:
+        """Play a block as its composition says."""
 
 
 class Movable(Protocol):
@@ -36,6 +44,10 @@ class Movable(Protocol):
     @property
     def talker(self) -> Sayer:
         """What has texts said."""
+
+    @property
+    def blocks(self) -> PlaysBlocks:
+        """What has BML blocks played."""
 
 
 class Request(ABC):
