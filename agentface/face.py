@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, NoReturn, Self
 
 import numpy as np
 
+from agentface.bml.block import Block
 from agentface.clock import Clock, SystemClock
 from agentface.conventions import Bytes, check_duration
 from agentface.deform.geometry import FaceGeometry
@@ -39,6 +40,7 @@ from agentface.requests import (
     LookAt,
     Neutral,
     Play,
+    PlayBlock,
     Request,
     Say,
     SetActionUnit,
@@ -58,6 +60,7 @@ from agentface.requests import (
 )
 from agentface.resources import DEFAULT_FACE
 from agentface.speech.phones import Phone
+from agentface.talk.blocks import BlockPlayer
 from agentface.talk.talker import Talker
 
 if TYPE_CHECKING:
@@ -127,6 +130,7 @@ class Face(AwaitableTwins):
         self._deformer = make_deformer(deformer, self.model, compiled=compiled)
         self._renderer: Renderer | None = None
         self._talker: Talker | None = None
+        self._blocks: BlockPlayer | None = None
         self._look = look
         self._closed = False
         self._pose: FacePose | None = None
@@ -267,6 +271,13 @@ class Face(AwaitableTwins):
         """
         self.apply(Play(performance, fade))
 
+    def play_block(self, block: Block) -> None:
+        """Play a BML block, as :func:`agentface.io.bml.reader.read_bml` reads it; what it says, once it is spoken.
+
+        Raises InvalidValueError for one whose id plays or waits already, and when too many wait.
+        """
+        self.apply(PlayBlock(block))
+
     def speak(
         self,
         visemes: Iterable[Phone | Sequence[Any]],
@@ -371,17 +382,26 @@ class Face(AwaitableTwins):
             self.noted.append(self._talker.notice)
         return self._talker
 
+    @property
+    def blocks(self) -> BlockPlayer:
+        """What plays BML blocks, and tells how far they are."""
+        if self._blocks is None:
+            self._blocks = BlockPlayer(self)
+            self.noted.append(self._blocks.notice)
+        return self._blocks
+
     def _advance(self, dt: float) -> None:
-        talker = self._talker
-        if talker is not None:
-            talker.advance(0.0)
-        while talker is not None and (part := talker.due_s) < dt:
+        agendas = [agenda for agenda in (self._blocks, self._talker) if agenda is not None]
+        for agenda in agendas:
+            agenda.advance(0.0)
+        while agendas and (part := min(agenda.due_s for agenda in agendas)) < dt:
             self.channels.advance(part)
-            talker.advance(part)
+            for agenda in agendas:
+                agenda.advance(part)
             dt -= part
         self.channels.advance(dt)
-        if talker is not None:
-            talker.advance(dt)
+        for agenda in agendas:
+            agenda.advance(dt)
 
     @property
     def deformer(self) -> Deformer:
@@ -471,6 +491,8 @@ class Face(AwaitableTwins):
         self._events.close()
         if self._talker is not None:
             self._talker.close()
+        if self._blocks is not None:
+            self._blocks.close()
         renderer, self._renderer = self._renderer, None
         if renderer is not None:
             renderer.close()

@@ -24,7 +24,7 @@ LAYERS = (
     ("emotion", "deform", "facs", "speech"),
     ("tissue", "mpeg4"),
     ("motion",),
-    ("arkit",),
+    ("arkit", "bml"),
     ("requests",),
     ("view", "talk"),
     ("events",),

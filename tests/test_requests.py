@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import copy
 import dataclasses
+import itertools
 import math
 import pickle
 
@@ -11,6 +12,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from agentface import EmotionState, Face, requests
+from agentface.bml.block import Behavior, Block
 from agentface.emotion.state import ALIASES, EMOTIONS
 from agentface.errors import InvalidValueError, UnknownNameError
 from agentface.motion.performance import Performance
@@ -22,6 +24,7 @@ from agentface.requests import (
     LookAt,
     Neutral,
     Play,
+    PlayBlock,
     Request,
     Say,
     SetActionUnit,
@@ -42,12 +45,21 @@ from agentface.requests import (
 from agentface.speech.phones import Phone
 from tests.heads import head_model
 
+_NUMBERS = itertools.count()
 FRACTIONS = st.floats(0, 1)
 FADES = st.floats(0, 2)
 HOLDS = st.none() | FADES | st.just("own")
 PERFORMED = Performance.regular(
     10, np.repeat(np.linspace(0, 0.2, 5, dtype=np.float32)[:, None], COUNT, 1), np.ones((1, COUNT))
 )
+
+
+def block_that_waits(name):
+    """A block of one behavior that shows nothing."""
+    wait = Behavior("w", "wait", 1, None, (1.0,))
+    return Block(f"{name}{next(_NUMBERS)}", (wait,))
+
+
 ANY_REQUEST = st.one_of(
     st.builds(SetEmotion, st.sampled_from((*EMOTIONS, *ALIASES, "neutral")), FRACTIONS, st.none() | FADES, HOLDS),
     st.builds(SetEmotions, st.dictionaries(st.sampled_from(EMOTIONS), FRACTIONS), st.none() | FADES, HOLDS),
@@ -69,6 +81,7 @@ ANY_REQUEST = st.one_of(
     st.builds(Gesture, st.sampled_from(("nod", "Brow Flash", "glance")), FRACTIONS),
     st.builds(SetLiveliness, FRACTIONS, st.none() | FADES),
     st.builds(SetState, st.sampled_from((None, "listening", "thinking"))),
+    st.builds(PlayBlock, st.sampled_from("ab").map(block_that_waits)),
     st.builds(Play, st.none() | st.sampled_from([PERFORMED]), FADES),
 )
 
@@ -95,7 +108,7 @@ def test_every_kind_is_tried_here():
         "SetEmotion", "SetEmotions", "Neutral", "SetMuscle", "SetParameter", "SetActionUnit", "SetGaze", "LookAt",
         "SetHead", "Blink", "Play", "SetFap", "SetFaps", "SetArkit", "SetMood", "Speak", "Hush", "ShowViseme",
         "Gesture", "SetLiveliness", "SetState",
-        "Say",
+        "Say", "PlayBlock",
     }  # fmt: skip
 
 

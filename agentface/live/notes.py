@@ -8,7 +8,7 @@ from typing import Self
 from agentface.conventions import check_rate
 from agentface.face import Face
 from agentface.live.loop import Frame
-from agentface.requests import Request, Say
+from agentface.requests import PlayBlock, Request, Say
 
 Note = tuple[float, Request]
 """When the step began before which something was asked, in seconds since the loop did; and what."""
@@ -61,6 +61,6 @@ class Replay:
         frame = round(time_s * self._fps)
         while self._next < len(self._notes) and round(self._notes[self._next][0] * self._fps) <= frame:
             request = self._notes[self._next][1]
-            if not isinstance(request, Say):  # what came of it is noted, too
+            if not isinstance(request, Say | PlayBlock):  # what came of it is noted, too
                 self._face.apply(request)
             self._next += 1

@@ -9,6 +9,7 @@ is a subclass of :class:`Request`.
 from agentface.requests.action_unit import SetActionUnit
 from agentface.requests.arkit import SetArkit
 from agentface.requests.blink import Blink
+from agentface.requests.block import PlayBlock
 from agentface.requests.emotion import SetEmotion, SetEmotions
 from agentface.requests.fap import SetFap, SetFaps
 from agentface.requests.gesture import Gesture
@@ -33,6 +34,7 @@ __all__ = [
     "Movable",
     "Neutral",
     "Play",
+    "PlayBlock",
     "Request",
     "Say",
     "SetActionUnit",

@@ -7,6 +7,7 @@ from collections.abc import Hashable
 from typing import TYPE_CHECKING, Protocol
 
 if TYPE_CHECKING:
+    from agentface.bml.block import Block
     from agentface.head.model import HeadModel
     from agentface.motion.doing import Doing
     from agentface.motion.mixer import Mixer
@@ -23,6 +24,13 @@ class Sayer(Protocol):
         """Say a text when its turn has come, or, with ``interrupt``, at once."""
 
 
+class PlaysBlocks(Protocol):
+    """What has BML blocks played."""
+
+    def play(self, block: Block) -> None:
+        """Play a block as its composition says."""
+
+
 class Movable(Protocol):
     """What a request reaches: a face's model, what moves it, and what speaks for it."""
 
@@ -37,6 +45,10 @@ class Movable(Protocol):
     @property
     def talker(self) -> Sayer:
         """What has texts said."""
+
+    @property
+    def blocks(self) -> PlaysBlocks:
+        """What has BML blocks played."""
 
 
 class Request(ABC):

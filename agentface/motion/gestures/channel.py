@@ -23,9 +23,12 @@ _MOVED = ("head_yaw", "head_pitch")
 class _Playing:
     """A gesture that goes on: from ``start`` on, less and less once it was told to end."""
 
-    def __init__(self, gesture: GestureForm, start: float, strength: float, lags: Sequence[float]) -> None:
+    def __init__(
+        self, gesture: GestureForm, start: float, strength: float, lags: Sequence[float], length_s: float | None = None
+    ) -> None:
         self.gesture, self.start, self.strength, self.lags = gesture, start, strength, lags
-        self.over = start + gesture.length_s + max(lags, default=0.0)
+        self.pace = 1.0 if length_s is None else gesture.length_s / length_s
+        self.over = start + gesture.length_s / self.pace + max(lags, default=0.0)
         self._ends, self._fade = math.inf, 1.0
         self.doing = Doing(begun=True)
 
@@ -82,16 +85,16 @@ class GestureChannel:
         """The names of those that go on, the oldest first."""
         return tuple(each.gesture.name for each in self._playing if each.start <= self._now)
 
-    def play(self, name: str, strength: float = 1.0, in_s: float = 0.0) -> Doing:
+    def play(self, name: str, strength: float = 1.0, in_s: float = 0.0, length_s: float | None = None) -> Doing:
         """Begin a gesture ``in_s`` seconds from now, at ``strength`` 0..1; raises UnknownNameError.
 
-        One of the same name that goes on then ends.
+        It takes ``length_s`` seconds, its own time when None. One of the same name that goes on then ends.
         """
         if name not in self.gestures:
             raise UnknownNameError("gesture", name, tuple(self.gestures))
         gesture = self.gestures[name]
         lags = [self._lags.get(track.name, 0.0) if self.lagging else 0.0 for track in gesture.tracks]
-        asked = _Playing(gesture, self._now + in_s, strength, lags)
+        asked = _Playing(gesture, self._now + in_s, strength, lags, length_s)
         self._playing.append(asked)
         self._playing.sort(key=lambda each: each.start)
         return asked.doing
@@ -145,7 +148,7 @@ class GestureChannel:
     def _add(self, each: _Playing, levels: list[float]) -> None:
         part, since = each.part(self._now), self._now - each.start
         for track, lag in zip(each.gesture.tracks, each.lags, strict=True):
-            place, level = self._places[track.name], part * track.at(since - lag)
+            place, level = self._places[track.name], part * track.at(each.pace * (since - lag))
             if self._contracts[place]:
                 levels[place] = 1.0 - (1.0 - levels[place]) * (1.0 - level)
             else:

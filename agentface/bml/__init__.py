@@ -1,0 +1,1 @@
+"""BML: blocks of behaviors, and when each of them happens."""

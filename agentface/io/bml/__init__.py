@@ -1,0 +1,1 @@
+"""BML documents."""

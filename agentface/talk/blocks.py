@@ -1,0 +1,331 @@
+""":class:`BlockPlayer`: what plays BML blocks on a face."""
+
+from __future__ import annotations
+
+import math
+import weakref
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import partial
+from heapq import heappop, heappush
+from itertools import count, pairwise
+from typing import Protocol
+
+from agentface.bml.block import ENDS, STARTS, Aim, Behavior, Block, Nod, SyncPoint, Text
+from agentface.bml.table import bml_table
+from agentface.bml.timetable import Timetable, schedule
+from agentface.errors import AgentFaceError, InvalidValueError
+from agentface.requests import Hush, Neutral, Request, SetEmotion, SetEmotions
+from agentface.speech.speaker import Done, Order, Speaker
+from agentface.speech.spoken import Spoken, joined
+from agentface.talk.block_speech import performed, script_of_speech
+from agentface.talk.staging import Staging, Staged
+
+MOST_BLOCKS = 64
+"""So many blocks may play and wait."""
+_MOST_OVER = 256
+"""Of so many that are over, sync points are remembered."""
+STOPPED = "stopped"
+"""What is told of a block that ends before its time."""
+_SAME_S = 1e-9
+
+
+class SpeechPerformer(Protocol):
+    """What says a speech."""
+
+    def perform(self, spoken: Spoken, *, interrupt: bool = False) -> None:
+        """Say what is spoken already."""
+
+
+class BlockFace(Staged, Protocol):
+    """What a player needs of its face."""
+
+    @property
+    def talker(self) -> SpeechPerformer:
+        """What says its speeches."""
+
+    def apply(self, request: Request) -> None:
+        """Do what is asked."""
+
+
+@dataclass(frozen=True, slots=True)
+class Progress:
+    """How far a block is.
+
+    Attributes:
+        block: its id.
+        what: ``start``, ``end``, ``stopped``, or a sync point of it as ``behavior:sync``.
+        time_s: seconds since the block began.
+    """
+
+    block: str
+    what: str
+    time_s: float
+
+
+@dataclass(eq=False)
+class _Waiting:
+    """A block whose turn comes, and what is spoken of it so far."""
+
+    block: Block
+    parts: dict[str, list[Spoken]] = field(default_factory=dict)
+    missing: int = 0
+
+
+@dataclass(eq=False)
+class _Run:
+    """A block that plays, since ``start``."""
+
+    block: Block
+    start: float
+    times: Timetable
+    speaking: bool = False
+    over: bool = False
+
+
+class BlockPlayer:
+    """Plays BML blocks, each when its speeches are spoken and its composition lets it.
+
+    Time is what :meth:`advance` is given; all calls are for the thread that steps the face.
+
+    Attributes:
+        told: called with every :class:`Progress`.
+        failed: called with the id of a block that cannot be played, and what went wrong.
+        error: what went wrong last; None before anything has.
+    """
+
+    def __init__(self, face: BlockFace, speaker: Speaker | None = None) -> None:
+        self._face: BlockFace = weakref.proxy(face)
+        self._speaker = speaker or Speaker()
+        self.told: list[Callable[[Progress], object]] = []
+        self.failed: list[Callable[[str, AgentFaceError], object]] = []
+        self.error: AgentFaceError | None = None
+        self._scene = Staging(self._face, self._ask)
+        self._now = 0.0
+        self._own = False
+        self._events: list[tuple[float, int, _Run, Callable[[], None]]] = []
+        self._count = count()
+        self._waiting: list[_Waiting] = []
+        self._runs: list[_Run] = []
+        self._over: dict[str, _Run] = {}
+        self._orders: list[tuple[Order, _Waiting, str]] = []
+        weakref.finalize(self, self._speaker.close)
+
+    @property
+    def blocks(self) -> tuple[str, ...]:
+        """The ids of those that play, and of those that wait."""
+        return (*(run.block.id for run in self._runs), *(waiting.block.id for waiting in self._waiting))
+
+    @property
+    def due_s(self) -> float:
+        """In how many seconds something is to happen, so that nobody steps over it; infinite where nothing is."""
+        return max(self._events[0][0] - self._now, 0.0) if self._events else math.inf
+
+    def play(self, block: Block) -> None:
+        """Play a block when its speeches are spoken; raises InvalidValueError for an id that plays or waits already."""
+        if block.id in self.blocks and block.composition != "REPLACE":
+            raise InvalidValueError("block id", "one that neither plays nor waits", block.id, "give each block its own")
+        if len(self.blocks) >= MOST_BLOCKS:
+            raise InvalidValueError("block", f"at most {MOST_BLOCKS} that play or wait", "one more", "send it later")
+        waiting = _Waiting(block, {name: [spoken] for name, spoken in block.spoken})
+        for behavior in block.speeches:
+            if isinstance(behavior.does, Text) and behavior.id not in waiting.parts:
+                order = Order(script_of_speech(behavior.does))
+                waiting.missing += 1
+                self._orders.append((order, waiting, behavior.id))
+                self._speaker.ask(order)
+        if block.speeches:
+            self._face.talker  # noqa: B018  # made now, so that it is stepped with the face from here on
+        self._waiting.append(waiting)
+
+    def wait(self) -> None:
+        """Until everything is spoken that blocks say: nothing is late then, however the face is stepped."""
+        self._speaker.wait()
+
+    def advance(self, dt: float) -> None:
+        """Let ``dt`` seconds pass, at most ``due_s`` for what is then to be in its time; 0 begins what is ready."""
+        self._now += dt
+        while (done := self._speaker.take()) is not None:
+            self._take(done)
+        while True:
+            while self._events and self._events[0][0] <= self._now + _SAME_S:
+                *_, run, happens = heappop(self._events)
+                if not run.over:
+                    happens()
+            ready = next(self._ready(), None)
+            if ready is None:
+                return
+            self._begin(ready)
+
+    def stop(self, fade: float | None = None) -> None:
+        """End what plays within ``fade`` seconds, and drop what waits; the usual time when None."""
+        self._drop(tuple(self._waiting))
+        self._speaker.drop()
+        self._stop_runs(bml_table().let_go_s if fade is None else fade)
+
+    def notice(self, request: Request) -> None:
+        """End all when the face is told to let go; what tells it what to feel outlasts what plays."""
+        if self._own:
+            return
+        if isinstance(request, Neutral):
+            self._scene.forget()
+            self.stop(request.fade)
+        elif isinstance(request, SetEmotion):
+            self._scene.felt(request.emotion, request.intensity)
+        elif isinstance(request, SetEmotions):
+            for name, level in request.state.items():
+                self._scene.felt(name, level)
+
+    def close(self) -> None:
+        """End the voices."""
+        self._speaker.close()
+
+    def _take(self, done: Done) -> None:
+        place = next((place for place, each in enumerate(self._orders) if each[0] is done.order), None)
+        if place is None:
+            return
+        _, waiting, behavior = self._orders[place]
+        if done.error is not None:
+            self._fail(waiting, done.error)
+            return
+        if done.spoken is not None:
+            waiting.parts.setdefault(behavior, []).append(done.spoken)
+        if done.last:
+            del self._orders[place]
+            waiting.missing -= 1
+
+    def _fail(self, waiting: _Waiting, error: AgentFaceError) -> None:
+        self._waiting.remove(waiting)
+        self._orders = [each for each in self._orders if each[1] is not waiting]
+        self.error = error
+        for tell in tuple(self.failed):
+            tell(waiting.block.id, error)
+
+    def _ready(self) -> Iterator[_Waiting]:
+        """Those that may begin now."""
+        for place, waiting in enumerate(self._waiting):
+            turn = waiting.block.composition != "APPEND" or (place == 0 and not self._runs)
+            if turn and not waiting.missing:
+                yield waiting
+
+    def _begin(self, waiting: _Waiting) -> None:
+        block = waiting.block
+        try:
+            spoken = performed(block, {name: joined(parts) for name, parts in waiting.parts.items()})
+            steps = {name: each for name, (_, each) in spoken.items()}
+            times = schedule(block, steps, self._outside)
+        except AgentFaceError as error:
+            self._fail(waiting, error)
+            return
+        if block.composition == "REPLACE":
+            self._drop(self._waiting[: self._waiting.index(waiting)])
+            self._stop_runs(bml_table().let_go_s)
+        self._waiting.remove(waiting)
+        run = _Run(block, self._now, times)
+        self._runs.append(run)
+        self._remember(run)
+        self._at(run, 0.0, partial(self._tell, run, STARTS))
+        for behavior in block.behaviors:
+            self._plan(run, behavior, {name: each for name, (each, _) in spoken.items()})
+        self._at(run, times.end_s, partial(self._end, run))
+
+    def _outside(self, point: SyncPoint) -> float | None:
+        run = self._over.get(point.block)
+        if run is None:
+            return None
+        if not point.behavior:
+            time: float | None = 0.0 if point.name == STARTS else run.times.end_s
+        else:
+            time = run.times.times.get(SyncPoint(point.behavior, point.name))
+        return None if time is None else run.start + time - self._now
+
+    def _remember(self, run: _Run) -> None:
+        self._over.pop(run.block.id, None)
+        self._over[run.block.id] = run
+        while len(self._over) > _MOST_OVER:
+            del self._over[next(iter(self._over))]
+
+    def _plan(self, run: _Run, behavior: Behavior, spoken: Mapping[str, Spoken]) -> None:
+        """Have everything that a behavior does happen in its time."""
+        times = run.times.of(behavior)
+        acts = dict(self._acts(run, behavior, times, spoken))
+        for name, time in zip(behavior.points, times, strict=True):
+            if name in acts:
+                self._at(run, time, acts[name])
+            if isinstance(behavior.does, Nod) and name == STARTS:
+                self._plan_nods(run, behavior, behavior.does, times[0], times[-1] - times[0])
+            if behavior.kind != "other":
+                self._at(run, time, partial(self._tell, run, f"{behavior.id}:{name}"))
+
+    def _acts(
+        self, run: _Run, behavior: Behavior, times: Sequence[float], spoken: Mapping[str, Spoken]
+    ) -> Iterator[tuple[str, Callable[[], None]]]:
+        """What is done at which sync point."""
+        does, scene, owner = behavior.does, self._scene, (run, behavior.id)
+        fades = [later - earlier for earlier, later in pairwise(times)]
+        if isinstance(does, Text):
+            yield STARTS, partial(self._say, run, spoken[behavior.id])
+            yield ENDS, partial(setattr, run, "speaking", False)
+        elif isinstance(does, Aim):
+            if behavior.kind == "gaze":
+                yield STARTS, partial(scene.look, owner, does, fades[0])
+                yield "relax", partial(scene.look_back, owner, fades[-1])
+            else:
+                shift = scene.shift_look if behavior.kind == "gaze_shift" else scene.shift_head
+                yield STARTS, partial(shift, does, fades[0])
+        elif isinstance(does, Nod):
+            yield ENDS, partial(scene.nodded, owner)
+        elif does is not None and behavior.kind == "face":
+            yield STARTS, partial(scene.show, owner, does, fades[0])
+            yield "relax", partial(scene.let_go, owner, fades[-1])
+        elif does is not None:
+            yield STARTS, partial(scene.shift, does, fades[0])
+
+    def _plan_nods(self, run: _Run, behavior: Behavior, nod: Nod, start: float, length: float) -> None:
+        each = length / nod.times
+        for number in range(nod.times):
+            self._at(run, start + number * each, partial(self._scene.nod, (run, behavior.id), nod, each))
+
+    def _say(self, run: _Run, spoken: Spoken) -> None:
+        run.speaking = True
+        self._face.talker.perform(spoken, interrupt=True)
+
+    def _end(self, run: _Run) -> None:
+        run.over = True
+        self._runs.remove(run)
+        self._tell(run, ENDS)
+
+    def _drop(self, dropped: Sequence[_Waiting]) -> None:
+        """Forget blocks that wait."""
+        for waiting in dropped:
+            self._waiting.remove(waiting)
+            self._orders = [each for each in self._orders if each[1] is not waiting]
+            self._tell_all(Progress(waiting.block.id, STOPPED, 0.0))
+
+    def _stop_runs(self, fade: float) -> None:
+        runs, self._runs = self._runs, []
+        if not runs:
+            return
+        self._scene.clear(fade)
+        if any(run.speaking for run in runs):
+            self._ask(Hush())
+        for run in runs:
+            run.over = True
+            self._tell(run, STOPPED)
+
+    def _at(self, run: _Run, time: float, happens: Callable[[], None]) -> None:
+        heappush(self._events, (run.start + time, next(self._count), run, happens))
+
+    def _tell(self, run: _Run, what: str) -> None:
+        self._tell_all(Progress(run.block.id, what, self._now - run.start))
+
+    def _tell_all(self, progress: Progress) -> None:
+        for tell in tuple(self.told):
+            tell(progress)
+
+    def _ask(self, request: Request) -> None:
+        self._own = True
+        try:
+            self._face.apply(request)
+        finally:
+            self._own = False
