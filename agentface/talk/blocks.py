@@ -19,7 +19,7 @@ from agentface.requests import Hush, Neutral, Request, SetEmotion, SetEmotions
 from agentface.speech.speaker import Done, Order, Speaker
 from agentface.speech.spoken import Spoken, joined
 from agentface.talk.block_speech import performed, script_of_speech
-from agentface.talk.staging import Staging, Staged
+from agentface.talk.staging import Staged, Staging
 
 MOST_BLOCKS = 64
 """So many blocks may play and wait."""
@@ -33,7 +33,7 @@ _SAME_S = 1e-9
 class SpeechPerformer(Protocol):
     """What says a speech."""
 
-    def perform(self, spoken: Spoken, *, interrupt: bool = False) -> None:
+    def perform(self, spoken: Spoken, *, interrupt: bool = False) -> object:
         """Say what is spoken already."""
 
 
@@ -44,7 +44,7 @@ class BlockFace(Staged, Protocol):
     def talker(self) -> SpeechPerformer:
         """What says its speeches."""
 
-    def apply(self, request: Request) -> None:
+    def apply(self, request: Request) -> object:
         """Do what is asked."""
 
 
