@@ -25,6 +25,7 @@ FIGURES: dict[str, str] = {
     "faps": "each FAP at both ends of what the faces show of it, a sheet a group",
     "visemes": "the mouth in each viseme, from two sides",
     "looks": "the faces in their looks, and the styles of hair",
+    "talking": "faces that speak and feel, frame by frame",
     "life": "five seconds of a face that listens, every tenth frame",
     "envelopes": "how emotions come and go, and what the muscles make of a change",
     "expressions": "Figures 13 to 16: neutral, surprise, happiness, sadness",
