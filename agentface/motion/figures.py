@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from functools import cache
 from pathlib import Path
@@ -47,6 +48,7 @@ class StateRow(Table):
     blinks_per_minute: Annotated[float, Field(ge=0.1, le=60)]
     at_s: Seconds
     away_s: Seconds
+    smallest_deg: Annotated[float, Field(ge=0, le=50)]
     largest_deg: Annotated[float, Field(gt=0, le=50)]
     sway: Annotated[float, Field(ge=0, le=4)]
     pupils: Annotated[float, Field(ge=-1, le=1)]
@@ -86,6 +88,10 @@ class SaccadeFigures(Table):
     head_beyond_deg: Degrees
     head_share: Share
     head_s: Seconds
+
+    def chance_of(self, degrees: float) -> float:
+        """The P of a saccade of so many degrees, at most ``largest_p``."""
+        return min(self.over * math.exp(-degrees / self.scale_deg), self.largest_p)
 
 
 class LookFigures(Table):
@@ -183,6 +189,9 @@ def _check(document: Document, table: LifeTable) -> None:
         expected = f"a number up to head_beyond, {table.look_at.head_beyond:g}"
         document.fault(("look_at", "eyes_keep"), expected, f"{table.look_at.eyes_keep:g}")
     for name, row in table.states.items():
+        if row.smallest_deg >= row.largest_deg:
+            where = ("states", name, "smallest_deg")
+            document.fault(where, f"less than largest_deg, {row.largest_deg:g}", f"{row.smallest_deg:g}")
         for key, mean in (("at_s", row.at_s), ("away_s", row.away_s)):
             if mean <= saccades.stay_s:
                 document.fault(("states", name, key), f"more than stay_s, {saccades.stay_s:g}", f"{mean:g}")

@@ -59,6 +59,7 @@ def test_every_fault_is_told_at_once_with_its_line(tmp_path):
         ("over: 15.7", "over: 14", "saccades.largest_p"),
         ("eyes_keep: 0.6", "eyes_keep: 0.95", "look_at.eyes_keep"),
         ("at_s: 0.9", "at_s: 0.1", "states.thinking.at_s"),
+        ("smallest_deg: 5.0", "smallest_deg: 30.0", "states.thinking.smallest_deg"),
         ("apart_s: 0.6", "apart_s: 3.0", "states.speaking.blinks_per_minute"),
     ],
 )

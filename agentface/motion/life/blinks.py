@@ -68,7 +68,8 @@ class Blinks:
         """The mean stay beyond the shortest, where leaps of the state's own gaze bring some of the blinks."""
         figures, saccades = self._figures, self._saccades
         blinks = 60.0 * (1.0 + figures.double) / state.blinks_per_minute
-        mean_degrees = saccades.scale_deg * (1.0 + math.log(saccades.over / saccades.largest_p))
+        least = saccades.chance_of(state.smallest_deg)
+        mean_degrees = saccades.scale_deg * (1.0 + math.log(saccades.over / least))
         leaps = 2.0 / (state.at_s + state.away_s) * min(figures.per_degree * mean_degrees, figures.most)
         rest = 1.0 / max(blinks - figures.apart_s, 1e-3) - leaps
         return 1.0 / max(rest, 1e-2)

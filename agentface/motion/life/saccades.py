@@ -79,9 +79,8 @@ class Saccades:
         """Yaw and pitch in degrees of the next way aside."""
         assert self._state is not None  # noqa: S101 - for the type checker
         figures, random = self._figures, self._random
-        least = figures.over * math.exp(-self._state.largest_deg / figures.scale_deg)
-        drawn = random.uniform(min(least, figures.largest_p), figures.largest_p)
-        size = -figures.scale_deg * math.log(drawn / figures.over)
+        ends = figures.chance_of(self._state.largest_deg), figures.chance_of(self._state.smallest_deg)
+        size = -figures.scale_deg * math.log(random.uniform(*ends) / figures.over)
         bin_ = int(random.choice(self._directions, p=self._shares))
         if bin_ == _DOWN and random.random() < self._state.upward:
             bin_ = _UP
