@@ -18,9 +18,9 @@ from agentface.commands.options import face_options, json_option, write_json
 def bench(*, name: str | None, volume: bool, json_file: str | None, face: str, deformer: str) -> None:
     """Run one benchmark, or all.
 
-    They are deform, fuzzy, papers, frame, motion, crowd, render, start, tissue, mpeg4, arkit and texture. Of all of
-    them, those that draw are left out, and said to be, on a machine without OpenGL. The laws that the mouth keeps
-    while it speaks take an hour, and are measured when asked for alone: speech.
+    They are deform, fuzzy, papers, frame, motion, latency, crowd, render, start, tissue, mpeg4, arkit and texture. Of
+    all of them, those that draw are left out, and said to be, on a machine without OpenGL. The laws that the mouth
+    keeps while it speaks take an hour, and are measured when asked for alone: speech.
     """
     from agentface.deform.protocol import check_deformer
     from agentface.errors import UnknownNameError

@@ -17,6 +17,7 @@ BENCHES: dict[str, str] = {
     "papers": "the paper's Table 1: its loops with and without its improvements, and ours",
     "frame": "the whole face, beside a blendshape product with normals, and how it grows with the mesh",
     "motion": "the motion of a face a frame: still, told, alive, and with all channels on",
+    "latency": "from another process's message to the first changed frame, at 60 frames a second, and a picture apart",
     "crowd": "many faces in one call, on one thread and on two",
     "render": "a picture in both qualities and two sizes, stage by stage, beside clearing and reading one back",
     "start": "a picture from a command, and first faces, beside importing the libraries",
