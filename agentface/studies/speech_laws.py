@@ -78,7 +78,7 @@ class Manner:
         return f"{'+'.join(self.state) or 'neutral'}, rate {self.rate:g}, loudness {self.loudness:g}"
 
 
-class Mouth:
+class SpeakingMouth:
     """A face that says sentences, and what is measured of it."""
 
     def __init__(self, model: HeadModel, deformer: str) -> None:

@@ -14,7 +14,7 @@ from agentface.speech.phones import Phone
 from agentface.studies import speech_laws
 from agentface.studies.harvard import harvard
 from agentface.studies.mouth_ruler import MouthRuler
-from agentface.studies.speech_laws import LAWS, STATES, Manner, Mouth, broken
+from agentface.studies.speech_laws import LAWS, STATES, Manner, SpeakingMouth, broken
 
 FEW = (harvard()[5], harvard()[14], harvard()[19])
 """Sentences that have every sound the laws speak of, and many p, b, m, f."""
@@ -23,7 +23,7 @@ HURRIED = ((1.6, 1.8), (1.6, 0.4), (0.6, 1.8), (0.6, 0.4))
 
 @cache
 def mouth(face):
-    return Mouth(load_model(face), "geometric")
+    return SpeakingMouth(load_model(face), "geometric")
 
 
 def test_the_sentences_are_the_lists_and_follow_one_another():

@@ -13,7 +13,7 @@ from agentface.head.model import load_model
 from agentface.motion.speech import SpeechChannel
 from agentface.resources import face_names
 from agentface.studies.harvard import harvard
-from agentface.studies.speech_laws import LAWS, STATES, Manner, Mouth, broken
+from agentface.studies.speech_laws import LAWS, STATES, Manner, SpeakingMouth, broken
 
 SETTINGS = ((1.0, 1.0), (0.6, 1.0), (1.6, 1.0), (1.0, 0.4), (1.0, 1.8))
 """Rates and loudnesses."""
@@ -23,13 +23,15 @@ _FRAMES = 600
 def run(deformer_name: str = DEFAULT_DEFORMER) -> dict[str, Any]:
     """By face: each law's least and largest figure over all emotions, rates and loudnesses; and what broke which."""
     manners = [Manner(state, rate, loudness) for state in STATES for rate, loudness in SETTINGS]
-    figures: dict[str, Any] = {name: _over(Mouth(load_model(name), deformer_name), manners) for name in face_names()}
+    figures: dict[str, Any] = {
+        name: _over(SpeakingMouth(load_model(name), deformer_name), manners) for name in face_names()
+    }
     figures["manners"] = len(manners)
     figures["frame_us"] = _frame_us()
     return figures
 
 
-def _over(mouth: Mouth, manners: Iterable[Manner]) -> dict[str, Any]:
+def _over(mouth: SpeakingMouth, manners: Iterable[Manner]) -> dict[str, Any]:
     least, most = (dict.fromkeys(LAWS, sign * np.inf) for sign in (1.0, -1.0))
     faults: list[str] = []
     for manner in manners:

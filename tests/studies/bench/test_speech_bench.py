@@ -24,7 +24,7 @@ class Kept:
 
 
 def test_what_breaks_a_law_is_told_with_its_manner(monkeypatch):
-    monkeypatch.setattr(speech, "Mouth", Kept)
+    monkeypatch.setattr(speech, "SpeakingMouth", Kept)
     monkeypatch.setattr(speech, "load_model", lambda name: name)
     figures = json.loads(json.dumps(run("speech")))
     assert figures["manners"] == len(STATES) * len(speech.SETTINGS)
