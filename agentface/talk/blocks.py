@@ -207,7 +207,8 @@ class BlockPlayer:
             tell(waiting.block.id, error)
 
     def _ready(self) -> Iterator[_Waiting]:
-        """Those that may begin now."""
+        """Those that may begin now; what was taken back while it waited never does."""
+        self._drop([waiting for waiting in self._waiting if waiting.doing.outcome is not None])
         for place, waiting in enumerate(self._waiting):
             turn = waiting.block.composition != "APPEND" or (place == 0 and not self._runs)
             if turn and not waiting.missing:

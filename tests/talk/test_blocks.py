@@ -228,6 +228,9 @@ def test_the_feedback_begins_with_the_start_and_is_in_order(stage):
 WAIT = '<wait id="w" duration="1"/>'
 
 
+BLOCKS = {"a": WAIT, "b": '<wait id="w" duration="9"/>', "c": '<speech id="s"><text>Bad word.</text></speech>'}
+
+
 def test_merge_plays_beside_append_after_all(stage):
     stage.play(WAIT, "a")
     stage.run(0.5)
@@ -290,6 +293,25 @@ def test_an_id_is_for_one_block_and_not_too_many_wait(stage):
         stage.play(WAIT, f"w{number}")
     with pytest.raises(InvalidValueError, match=f"at most {MOST_BLOCKS}"):
         stage.play(WAIT, "more")
+
+
+def test_what_is_taken_back_while_it_waits_is_not_played(stage):
+    stage.play(WAIT, "a")
+    doing = stage.face.apply(PlayBlock(block(WAIT, "b", composition="APPEND")))
+    stage.run(0.5)
+    doing.end(whole=False)
+    stage.run(2.0)
+    assert stage.when("start", "b") == []
+    assert stage.when("stopped", "b") == [0.5]
+
+
+def test_what_goes_on_says_how_it_ended(stage):
+    whole, half, bad = (stage.face.apply(PlayBlock(block(text, name))) for name, text in BLOCKS.items())
+    stage.player.wait()
+    stage.run(1.5)
+    stage.player.stop()
+    assert (whole.outcome, half.outcome, bad.outcome) == (True, False, False)
+    assert (half.error, str(bad.error)) == (None, "no voice for that")
 
 
 def test_neutral_ends_all_and_what_is_felt_meanwhile_stays(stage):
