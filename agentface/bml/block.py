@@ -124,11 +124,15 @@ class Behavior:
 
 @dataclass(frozen=True, slots=True)
 class Precedence:
-    """That one sync point is not later than another."""
+    """That one sync point is not later than another.
+
+    ``before``: the earlier one makes room for the later one; else the later one waits.
+    """
 
     earlier: SyncTime
     later: SyncTime
     line: int
+    before: bool = False
 
 
 @dataclass(frozen=True, slots=True)

@@ -13,7 +13,6 @@ SHORTEST_S = 0.02
 """No behavior that begins and ends is shorter."""
 _Rule: TypeAlias = tuple[SyncPoint, SyncPoint, float, int]
 """That the second is at least so many seconds after the first, and the line that says so."""
-_Told: TypeAlias = tuple[SyncTime, SyncTime, int]
 Outside: TypeAlias = Callable[[SyncPoint], float | None]
 """When a sync point of another block is, in seconds after the start of this one; None where nobody knows it."""
 _ROUNDING_S = 1e-9
@@ -27,36 +26,48 @@ def check_order(
     """Raise DataError where sync points wait for themselves, or are told to be where their order does not allow.
 
     Least times are summed up along what waits for what, round by round, until they stay (Bellman, Quarterly of Applied
-    Mathematics 16, 1958): in a circle they grow for ever.
+    Mathematics 16, 1958): in a circle they grow for ever, and where each came from leads back to itself (Cherkassky,
+    Goldberg, Mathematical Programming 85, 1999).
     """
     rules = _rules(block, spoken or {}, outside)
     least: dict[SyncPoint, float] = dict.fromkeys((point for rule in rules for point in rule[:2]), 0.0)
     came: dict[SyncPoint, _Rule] = {}
-    for _ in range(len(least) + 1):
-        changed: SyncPoint | None = None
+    changed = True
+    while changed:
+        changed = False
         for rule in rules:
             before, after, gap, _line = rule
             if least[after] < least[before] + gap - _ROUNDING_S:
-                least[after], came[after], changed = least[before] + gap, rule, after
-        if changed is None:
-            return
-    assert changed is not None  # noqa: S101 - for the type checker
-    raise DataError([_circle(block, came, changed)])
+                least[after], came[after], changed = least[before] + gap, rule, True
+        circle = _circle(came)
+        if circle:
+            raise DataError([_told(block, circle)])
 
 
-def _circle(block: Block, came: Mapping[SyncPoint, _Rule], point: SyncPoint) -> Fault:
-    for _ in came:  # far enough back to be in the circle itself
-        point = came[point][0]
-    circle = [came[point]]
-    while circle[-1][0] != point:
-        circle.append(came[circle[-1][0]])
-    names = ", ".join(dict.fromkeys(str(rule[1]) for rule in reversed(circle)))
-    line = min((rule[3] for rule in circle if rule[3]), default=None)
+def _circle(came: Mapping[SyncPoint, _Rule]) -> list[_Rule]:
+    """The rules of a circle, if some point came from itself."""
+    seen: dict[SyncPoint, SyncPoint] = {}
+    for first in came:
+        point = first
+        while point in came and point not in seen:
+            seen[point] = first
+            point = came[point][0]
+        if seen.get(point) == first:
+            circle = [came[point]]
+            while circle[-1][0] != point:
+                circle.append(came[circle[-1][0]])
+            return circle[::-1]
+    return []
+
+
+def _told(block: Block, circle: Sequence[_Rule]) -> Fault:
+    names = ", ".join(dict.fromkeys(str(rule[1]) for rule in circle))
+    line = min(rule[3] for rule in circle)
     return Fault(block.path, line, "", "sync points that can be in their order", f"a circle: {names}"[:300])
 
 
 def _rules(block: Block, spoken: Mapping[str, Sequence[float]], outside: Outside) -> list[_Rule]:
-    told: list[_Told] = []
+    told: list[tuple[SyncTime, SyncTime, int]] = []
     for behavior in block.behaviors:
         line = behavior.line
         told += [(SyncTime(SyncPoint(behavior.id, name)), at, line) for name, at in behavior.anchors]

@@ -99,7 +99,8 @@ class _Placing:
             earlier, later = order.earlier, order.later
             self._bound(self._least, later, earlier)
             self._bound(self._most, earlier, later)
-            self._waits[later.point.behavior].append(earlier.point)
+            first, second = (later, earlier) if order.before else (earlier, later)
+            self._waits[second.point.behavior].append(first.point)
 
     def all(self) -> dict[SyncPoint, float]:
         """Seconds after the start of the block."""

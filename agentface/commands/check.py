@@ -25,7 +25,7 @@ _Loader = Callable[[Path], object]
 def check(*, files: tuple[Path, ...], face: str | None, strict: bool, deformer: str) -> None:
     """Check rules, faces and performances: files, folders, or, if none is named, all that come with agentface.
 
-    Performances are EmotionML, .fap, tables of OpenFace, py-feat and Live Link Face, and poses in .json and .npz;
+    Performances are EmotionML, BML, .fap, tables of OpenFace, py-feat and Live Link Face, and poses in .json and .npz;
     a .json may also have the times of a recording's phones.
 
     Prints every fault with file and line; the exit code is 1 if there is any. A face need not have a tissue.yaml,
@@ -114,6 +114,7 @@ def _faults_in(read: Callable[[], object]) -> list[Fault]:
 
 def _rule_readers() -> dict[str, _Loader]:
     from agentface.agents.faces import load_faces
+    from agentface.bml.table import load_bml_table
     from agentface.emotion.envelopes import load_envelopes
     from agentface.emotion.tables import load_blends, load_emotions
     from agentface.emotion.vocabularies import load_vocabularies
@@ -128,6 +129,7 @@ def _rule_readers() -> dict[str, _Loader]:
     return {
         "emotions.yaml": load_emotions,
         "blends.yaml": load_blends,
+        "bml.yaml": load_bml_table,
         "action_units.yaml": load_action_units,
         "agents.yaml": load_faces,
         "conflicts.yaml": load_conflicts,

@@ -91,10 +91,14 @@ def _in_terms_of(
 
 def _summary(path: Path, kind: FileKind, recording: Recording) -> dict[str, Any]:
     """The facts of one of the two files, JSON-ready."""
+    from agentface.bml.block import Block
     from agentface.emotion.score import Score
     from agentface.mpeg4.fap_stream import FapStream
 
-    if isinstance(recording, Score):
+    last_s: float | None
+    if isinstance(recording, Block):
+        frames, rate, last_s = None, None, None
+    elif isinstance(recording, Score):
         frames, rate, last_s = None, None, recording.duration_s
     elif isinstance(recording, FapStream):
         frames, rate, last_s = len(recording), recording.rate, (len(recording) - 1) / recording.rate
@@ -105,6 +109,6 @@ def _summary(path: Path, kind: FileKind, recording: Recording) -> dict[str, Any]
         "kind": kind.name,
         "frames": frames,
         "rate_hz": rate,
-        "duration_s": round(last_s, 6),
+        "duration_s": None if last_s is None else round(last_s, 6),
         "notes": [str(note) for note in getattr(recording, "notes", ())],
     }

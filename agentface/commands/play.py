@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from contextlib import AbstractContextManager, nullcontext
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -77,8 +78,8 @@ def play(
 ) -> None:
     """Play a file: in a window, in real time, or into a film.
 
-    EmotionML, MPEG-4 FAPs (.fap), OpenFace's, py-feat's and Live Link Face's tables (.csv), and poses (.json, .npz);
-    what is in the file says which it is.
+    EmotionML, BML with what it says, MPEG-4 FAPs (.fap), OpenFace's, py-feat's and Live Link Face's tables (.csv),
+    and poses (.json, .npz); what is in the file says which it is.
 
     \b
     agentface play moods.xml
@@ -120,7 +121,17 @@ def _show(
 
     player, length_s = player_of(found, face, again=loop)
     window = make_window(face, look=look, quality=quality, camera=camera)
-    window.run([player], duration=math.inf if loop else length_s, stopped=ending.told)
+    with _heard(found, face):
+        window.run([player], duration=math.inf if loop else length_s, stopped=ending.told)
+
+
+def _heard(found: Opened, face: Face) -> AbstractContextManager[object]:
+    """The face's voice on the machine's device, where the file lets it speak."""
+    from agentface.bml.block import Block
+    from agentface.io.voice_output import VoiceOutput
+
+    speaks = isinstance(found.recording, Block) and found.recording.speeches
+    return VoiceOutput(face.talker, tell) if speaks else nullcontext()
 
 
 def _film(face: Face, found: Opened, shot: Shot, ending: Ending) -> None:

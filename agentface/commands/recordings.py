@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -15,6 +16,7 @@ from agentface.commands.streams import tell
 from agentface.errors import DataError, Fault
 
 if TYPE_CHECKING:
+    from agentface.bml.block import Block
     from agentface.conventions import Floats
     from agentface.deform.geometry import FaceGeometry
     from agentface.face import Face
@@ -61,14 +63,36 @@ class Opened:
         return performance
 
     def sound(self) -> Sound | None:
-        """What is heard with it, if it says so; raises DataError for a sound that cannot be read."""
+        """What is heard with it, if it says so; raises DataError for a sound that cannot be read.
+
+        Of BML, what the voice says; raises what :attr:`voiced` raises.
+        """
+        from agentface.bml.block import Block
         from agentface.io.sound import read_sound
         from agentface.io.video import SOUND_HZ
         from agentface.motion.performance import Performance
+        from agentface.talk.block_speech import block_sound
 
+        if isinstance(self.recording, Block):
+            return block_sound(self.voiced, SOUND_HZ)
         if not isinstance(self.recording, Performance) or self.recording.sound is None:
             return None
         return read_sound(self.path.parent / self.recording.sound, SOUND_HZ)
+
+    @cached_property
+    def voiced(self) -> Block:
+        """The block of BML with its speeches spoken; raises SpeechError where there is no voice."""
+        from contextlib import closing
+
+        from agentface.bml.block import Block
+        from agentface.speech.voices.choose import open_voice
+        from agentface.talk.block_speech import speak_block
+
+        assert isinstance(self.recording, Block), "it is BML"  # noqa: S101 - for the type checker
+        if not self.recording.speeches:
+            return self.recording
+        with closing(open_voice()) as voice:
+            return speak_block(voice, self.recording)
 
     @property
     def _frames(self) -> float | None:
@@ -91,11 +115,17 @@ def opened(path: str | Path, file_fps: float | None, *, strict: bool = False) ->
 
 
 def player_of(found: Opened, face: Face, *, again: bool = False) -> tuple[Source, float]:
-    """What plays the file to ``face``, and how many seconds it takes until the face has let go of it."""
+    """What plays the file to ``face``, and how many seconds it takes until the face has let go of it.
+
+    Raises DataError for BML whose times cannot be, and SpeechError where there is no voice for it.
+    """
+    from agentface.bml.block import Block
     from agentface.emotion.score import Score
     from agentface.live.performances import PerformancePlayer
     from agentface.live.scores import ScorePlayer
 
+    if isinstance(found.recording, Block):
+        return _block_source(found, face, again=again)
     if isinstance(found.recording, Score):
         return ScorePlayer(face, found.recording, again=again), found.recording.length_s
     performance = found.performance(face)
@@ -107,6 +137,7 @@ def measured(found: Opened, face: Face, fps: float | None, stopped: Callable[[],
 
     Of FAPs, as many frames at the same rate, unless ``fps`` is given; of others, ``fps`` or their own rate, or 30.
     """
+    from agentface.bml.block import Block
     from agentface.clock import FrameClock
     from agentface.emotion.score import Score
     from agentface.live.fap_recorder import FapRecorder
@@ -115,7 +146,9 @@ def measured(found: Opened, face: Face, fps: float | None, stopped: Callable[[],
     from agentface.live.scores import ScorePlayer
 
     source: Source
-    if isinstance(found.recording, Score):
+    if isinstance(found.recording, Block):
+        (source, last_s), own = _block_source(found, face), None
+    elif isinstance(found.recording, Score):
         source, last_s, own = ScorePlayer(face, found.recording), found.recording.length_s, None
     else:
         performance = found.performance(face)
@@ -126,6 +159,14 @@ def measured(found: Opened, face: Face, fps: float | None, stopped: Callable[[],
         recorder = FapRecorder(_measure(face), told)
         run(face, FrameClock(rate), [source], [recorder], fps=rate, duration=(frames - 0.5) / rate, stopped=stopped)
     return recorder.stream(rate, getattr(found.recording, "name", "") or found.path.stem)
+
+
+def _block_source(found: Opened, face: Face, *, again: bool = False) -> tuple[Source, float]:
+    from agentface.live.blocks import SETTLES_S, BlockSource
+    from agentface.talk.block_speech import spoken_timetable
+
+    length_s = spoken_timetable(found.voiced).end_s + SETTLES_S
+    return BlockSource(face, found.voiced, again=again), length_s
 
 
 def _measure(face: Face) -> Callable[[FaceGeometry], Floats]:

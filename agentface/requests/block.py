@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 from agentface.bml.block import Block
 from agentface.errors import InvalidValueError
+from agentface.motion.doing import Doing
 from agentface.requests.request import Movable, Request
 
 
@@ -28,6 +29,6 @@ class PlayBlock(Request):
         """Each block by itself."""
         return type(self).__name__, self.block.id
 
-    def apply(self, face: Movable) -> None:
+    def apply(self, face: Movable) -> Doing:
         """Tell the face's player of blocks."""
-        face.blocks.play(self.block)
+        return face.blocks.play(self.block)

@@ -27,7 +27,7 @@ class Sayer(Protocol):
 class PlaysBlocks(Protocol):
     """What has BML blocks played."""
 
-    def play(self, block: Block) -> None:
+    def play(self, block: Block) -> Doing:
         """Play a block as its composition says."""
 
 

@@ -6,9 +6,11 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from itertools import pairwise
 
-from agentface.bml.block import Block, Text
+from agentface.bml.block import STARTS, Block, SyncPoint, Text
+from agentface.bml.timetable import Timetable, schedule
 from agentface.requests.say import emotion_of
 from agentface.speech.script import Script
+from agentface.speech.sound import Sound, mixed
 from agentface.speech.spoken import Spoken, speak_script
 from agentface.speech.voices.voice import Voice
 
@@ -54,3 +56,15 @@ def performed(block: Block, spoken: Mapping[str, Spoken]) -> dict[str, tuple[Spo
         for behavior in block.speeches
         if isinstance(behavior.does, Text)
     }
+
+
+def spoken_timetable(block: Block) -> Timetable:
+    """When everything is in a block whose speeches are spoken; raises DataError for times that cannot be."""
+    return schedule(block, {name: steps for name, (_, steps) in performed(block, dict(block.spoken)).items()})
+
+
+def block_sound(block: Block, rate_hz: int) -> Sound | None:
+    """What is heard of a block whose speeches are spoken, from its start on; None where it says nothing."""
+    times = spoken_timetable(block).times
+    parts = [(times[SyncPoint(name, STARTS)], spoken.sound) for name, spoken in block.spoken]
+    return mixed(parts, rate_hz) if parts else None

@@ -15,6 +15,7 @@ from agentface.bml.block import ENDS, STARTS, Aim, Behavior, Block, Nod, SyncPoi
 from agentface.bml.table import bml_table
 from agentface.bml.timetable import Timetable, schedule
 from agentface.errors import AgentFaceError, InvalidValueError
+from agentface.motion.doing import Doing
 from agentface.requests import Hush, Neutral, Request, SetEmotion, SetEmotions
 from agentface.speech.speaker import Done, Order, Speaker
 from agentface.speech.spoken import Spoken, joined
@@ -68,6 +69,7 @@ class _Waiting:
     """A block whose turn comes, and what is spoken of it so far."""
 
     block: Block
+    doing: Doing
     parts: dict[str, list[Spoken]] = field(default_factory=dict)
     missing: int = 0
 
@@ -77,6 +79,7 @@ class _Run:
     """A block that plays, since ``start``."""
 
     block: Block
+    doing: Doing
     start: float
     times: Timetable
     speaking: bool = False
@@ -121,13 +124,13 @@ class BlockPlayer:
         """In how many seconds something is to happen, so that nobody steps over it; infinite where nothing is."""
         return max(self._events[0][0] - self._now, 0.0) if self._events else math.inf
 
-    def play(self, block: Block) -> None:
+    def play(self, block: Block) -> Doing:
         """Play a block when its speeches are spoken; raises InvalidValueError for an id that plays or waits already."""
         if block.id in self.blocks and block.composition != "REPLACE":
             raise InvalidValueError("block id", "one that neither plays nor waits", block.id, "give each block its own")
         if len(self.blocks) >= MOST_BLOCKS:
             raise InvalidValueError("block", f"at most {MOST_BLOCKS} that play or wait", "one more", "send it later")
-        waiting = _Waiting(block, {name: [spoken] for name, spoken in block.spoken})
+        waiting = _Waiting(block, Doing(), {name: [spoken] for name, spoken in block.spoken})
         for behavior in block.speeches:
             if isinstance(behavior.does, Text) and behavior.id not in waiting.parts:
                 order = Order(script_of_speech(behavior.does))
@@ -137,6 +140,7 @@ class BlockPlayer:
         if block.speeches:
             self._face.talker  # noqa: B018  # made now, so that it is stepped with the face from here on
         self._waiting.append(waiting)
+        return waiting.doing
 
     def wait(self) -> None:
         """Until everything is spoken that blocks say: nothing is late then, however the face is stepped."""
@@ -197,12 +201,14 @@ class BlockPlayer:
     def _fail(self, waiting: _Waiting, error: AgentFaceError) -> None:
         self._waiting.remove(waiting)
         self._orders = [each for each in self._orders if each[1] is not waiting]
-        self.error = error
+        self.error = waiting.doing.error = error
+        waiting.doing.end(whole=False)
         for tell in tuple(self.failed):
             tell(waiting.block.id, error)
 
     def _ready(self) -> Iterator[_Waiting]:
-        """Those that may begin now."""
+        """Those that may begin now; what was taken back while it waited never does."""
+        self._drop([waiting for waiting in self._waiting if waiting.doing.outcome is not None])
         for place, waiting in enumerate(self._waiting):
             turn = waiting.block.composition != "APPEND" or (place == 0 and not self._runs)
             if turn and not waiting.missing:
@@ -221,7 +227,8 @@ class BlockPlayer:
             self._drop(self._waiting[: self._waiting.index(waiting)])
             self._stop_runs(bml_table().let_go_s)
         self._waiting.remove(waiting)
-        run = _Run(block, self._now, times)
+        waiting.doing.begun = True
+        run = _Run(block, waiting.doing, self._now, times)
         self._runs.append(run)
         self._remember(run)
         self._at(run, 0.0, partial(self._tell, run, STARTS))
@@ -292,6 +299,7 @@ class BlockPlayer:
 
     def _end(self, run: _Run) -> None:
         run.over = True
+        run.doing.end(whole=True)
         self._runs.remove(run)
         self._tell(run, ENDS)
 
@@ -300,6 +308,7 @@ class BlockPlayer:
         for waiting in dropped:
             self._waiting.remove(waiting)
             self._orders = [each for each in self._orders if each[1] is not waiting]
+            waiting.doing.end(whole=False)
             self._tell_all(Progress(waiting.block.id, STOPPED, 0.0))
 
     def _stop_runs(self, fade: float) -> None:
@@ -311,6 +320,7 @@ class BlockPlayer:
             self._ask(Hush())
         for run in runs:
             run.over = True
+            run.doing.end(whole=False)
             self._tell(run, STOPPED)
 
     def _at(self, run: _Run, time: float, happens: Callable[[], None]) -> None:

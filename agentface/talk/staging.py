@@ -50,6 +50,10 @@ class Staged(Protocol):
         """Target intensities."""
 
     @property
+    def mood(self) -> Mapping[str, float]:
+        """What the emotions return to."""
+
+    @property
     def turned_deg(self) -> Mapping[str, float]:
         """Where gaze and head go."""
 
@@ -181,7 +185,11 @@ class Staging:
             if key not in self._shifted:
                 self._before.pop(key, None)
         level = max(level, rest)
-        self._ask(SetEmotion(what, level, fade) if isinstance(what, str) else SetActionUnit(what, level, side, fade))
+        if isinstance(what, str):
+            back = not asked and key not in self._shifted and level == self._face.mood[what]
+            self._ask(SetEmotion(what, level, fade, 0.0 if back else None))
+        else:
+            self._ask(SetActionUnit(what, level, side, fade))
 
     def _note_look(self) -> None:
         if self._looks or self._aim is not None:

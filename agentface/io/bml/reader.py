@@ -117,7 +117,7 @@ class _BlockReader:
         behavior = self._reader.read(element)
         if behavior is None or not behavior.id:
             return
-        if behavior.id in self._elements or behavior.id in ("bml", self._block):
+        if behavior.id in self._elements or behavior.id == "bml":
             self._report.tell(element.line, behavior.id, "each id once", repr(behavior.id))
             return
         self._elements[behavior.id] = Attributes(element, behavior.id, self._report)
@@ -185,8 +185,9 @@ class _BlockReader:
             elif child.name == "synchronize":
                 self._meetings.append(Meeting(tuple(points), child.line))
             elif of[0] is not None:
-                pairs = [(point, of[0]) if child.name == "before" else (of[0], point) for point in points[1:]]
-                self._orders += [Precedence(earlier, later, child.line) for earlier, later in pairs]
+                before = child.name == "before"
+                pairs = [(point, of[0]) if before else (of[0], point) for point in points[1:]]
+                self._orders += [Precedence(earlier, later, child.line, before) for earlier, later in pairs]
             if len(self._orders) + sum(len(meeting.points) for meeting in self._meetings) > MOST_CONSTRAINTS:
                 self._report.tell(child.line, "constraint", f"at most {MOST_CONSTRAINTS} of them", "more")
                 self._report.check()

@@ -8,6 +8,7 @@ from typing import Any, TypeAlias
 
 from agentface.emotion.state import EMOTIONS, NEUTRAL, EmotionState, canonical_or_neutral
 from agentface.errors import AgentFaceError, InvalidValueError, UnknownNameError
+from agentface.io.bml.reader import read_bml
 from agentface.io.osc.pattern import is_pattern, matches
 from agentface.mpeg4.fap_stream import EXPRESSION, EXPRESSION_FIELDS, VISEME, VISEME_FIELDS
 from agentface.mpeg4.fap_table import FAP_COUNT
@@ -17,6 +18,7 @@ from agentface.requests import (
     Hush,
     LookAt,
     Neutral,
+    PlayBlock,
     Request,
     Say,
     SetActionUnit,
@@ -37,7 +39,7 @@ from agentface.requests import (
 )
 
 PREFIX = "/agentface/"
-STATUS, ERROR = "status", "error"
+STATUS, ERROR, FEEDBACK = "status", "error", "bml/feedback"
 Reader: TypeAlias = Callable[[Sequence[Any]], Request | None]
 """Makes the request of a message's arguments; None asks for nothing. Raises UnknownNameError or InvalidValueError."""
 _SPECIAL = frozenset(" #*,?[]{}")
@@ -273,6 +275,13 @@ def _say(arguments: Sequence[Any]) -> Request:
     return Say(*arguments)
 
 
+def _bml(arguments: Sequence[Any]) -> Request:
+    _count(arguments, "a block of BML", 1, 1)
+    if not isinstance(arguments[0], str):
+        raise InvalidValueError("arguments", "a block of BML as text", type(arguments[0]).__name__)
+    return PlayBlock(read_bml(arguments[0], "bml"))
+
+
 def _blink(arguments: Sequence[Any]) -> Request | None:
     return Blink() if pressed(arguments) else None
 
@@ -319,6 +328,7 @@ _READERS: dict[str, Reader] = {
     "visemes": _visemes,
     "hush": _hush,
     "say": _say,
+    "bml": _bml,
     "blink": _blink,
     "gesture": _gesture,
     "liveliness": _liveliness,

@@ -10,11 +10,13 @@ from typing import Any, TypeAlias
 from agentface.clock import Clock
 from agentface.errors import AgentFaceError, InvalidValueError
 from agentface.face import Face
-from agentface.io.osc.addresses import ERROR, PREFIX, STATUS, Addresses, check_id, pressed, reason_and_hint
+from agentface.io.osc.addresses import ERROR, FEEDBACK, PREFIX, STATUS, Addresses, check_id, pressed, reason_and_hint
 from agentface.io.osc.codec import MalformedError, Message, address_of, decode, encode
+from agentface.io.osc.feedback import Feedback
 from agentface.io.osc.rate_limit import RateLimit
 from agentface.io.osc.schedule import FURTHEST_S, MOST, Schedule, Sender, Waiting
 from agentface.motion.doing import Doing
+from agentface.requests import PlayBlock
 
 ANSWERS_AT_ONCE, ANSWERS_A_SECOND = 200.0, 100.0
 MOST_FACES = 8
@@ -45,6 +47,7 @@ class Receiver:
         self._begun: deque[tuple[str, Waiting, Doing]] = deque(maxlen=MOST)
         self._errors = RateLimit(clock, ANSWERS_AT_ONCE, ANSWERS_A_SECOND)
         self._statuses = RateLimit(clock, ANSWERS_AT_ONCE, ANSWERS_A_SECOND)
+        self._feedback = Feedback(reply, clock)
 
     def take(self, datagrams: Iterable[tuple[bytes, Sender]]) -> None:
         """Take in datagrams and what has come due; then answer those who asked for the status."""
@@ -112,6 +115,9 @@ class Receiver:
     def _apply(self, face: str, waiting: Waiting) -> None:
         try:
             doing = self._faces[face].apply(waiting.request)
+            if isinstance(waiting.request, PlayBlock):
+                address = f"{PREFIX}{face}/{FEEDBACK}" if self._several else f"{PREFIX}{FEEDBACK}"
+                self._feedback.expect(self._faces[face], address, waiting.request.block, waiting.sender)
         except AgentFaceError as error:  # what only this face can tell, such as a point behind its eyes
             self._refuse_one(face, waiting, error)
         else:

@@ -9,8 +9,10 @@ from pathlib import Path
 from typing import TypeAlias
 
 from agentface.arkit.stream import ArkitStream
+from agentface.bml.block import Block
 from agentface.emotion.score import Score
 from agentface.errors import DataError, Fault
+from agentface.io.bml.reader import is_bml, load_bml
 from agentface.io.emotionml import load_emotionml
 from agentface.io.performances import poses_json, poses_npz
 from agentface.io.performances.live_link import is_live_link, read_live_link
@@ -24,7 +26,7 @@ from agentface.motion.performance import Performance
 from agentface.mpeg4.fap_file import read_fap
 from agentface.mpeg4.fap_stream import FapStream
 
-Recording: TypeAlias = Performance | FapStream | ActionUnitStream | ArkitStream | Score
+Recording: TypeAlias = Performance | FapStream | ActionUnitStream | ArkitStream | Score | Block
 """What a file holds, in its own terms."""
 LARGEST_FAP = 64 * 1024 * 1024
 """Bytes: about two hours of all FAPs at 25 frames a second."""
@@ -125,6 +127,10 @@ def _load_emotionml(path: Path, _: float | None) -> Score:
     return load_emotionml(path)
 
 
+def _load_bml(path: Path, _: float | None) -> Block:
+    return load_bml(path)
+
+
 def _load_json(path: Path, _: float | None) -> Performance:
     return read_json(read_bytes(path, poses_json.LARGEST_FILE), path)
 
@@ -147,6 +153,7 @@ def _load_py_feat(path: Path, rate_hz: float | None) -> ActionUnitStream:
 
 KINDS: tuple[FileKind, ...] = (
     FileKind("poses-npz", "poses in NPZ (.npz)", ".npz", _is_zip, _load_npz),
+    FileKind("bml", "BML (.bml)", ".bml", is_bml, _load_bml),
     FileKind("emotionml", "EmotionML (.xml)", ".xml", _is_xml, _load_emotionml),
     FileKind("poses-json", "poses in JSON (.json)", ".json", _is_json, _load_json),
     FileKind("fap", "MPEG-4 FAPs (.fap)", ".fap", _is_fap, _load_fap),

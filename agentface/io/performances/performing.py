@@ -6,9 +6,10 @@ from collections.abc import Callable
 from pathlib import Path
 
 from agentface.arkit.stream import ArkitStream
+from agentface.bml.block import Block
 from agentface.emotion.inference import default_inference
 from agentface.emotion.score import Score
-from agentface.errors import Fault
+from agentface.errors import DataError, Fault
 from agentface.head.model import HeadModel
 from agentface.io.performances.fap_performance import performance_of_faps
 from agentface.io.performances.kinds import Recording
@@ -31,7 +32,10 @@ class Performer:
     def performance(
         self, recording: Recording, where: str | Path, told: Callable[[int], object] = lambda _: None
     ) -> Performance:
-        """The performance of a recording of the file ``where``; ``told`` gets the number of frames that are done."""
+        """The performance of a recording of the file ``where``; ``told`` gets the number of frames that are done.
+
+        Raises DataError for BML, whose speeches have no frames before they are spoken.
+        """
         if isinstance(recording, Performance):
             return recording
         if isinstance(recording, ActionUnitStream):
@@ -40,6 +44,9 @@ class Performer:
             return performance_of_score(recording, default_inference())
         if isinstance(recording, ArkitStream):
             return self._of_weights(recording, told)
+        if isinstance(recording, Block):
+            hint = "agentface play films it, and measures it in FAPs"
+            raise DataError([Fault(Path(where), None, "", "a file that has frames, or emotions in time", "BML", hint)])
         return self._of_faps(recording, where, told)
 
     def arkit_stream(self, performance: Performance, told: Callable[[int], object] = lambda _: None) -> ArkitStream:

@@ -66,4 +66,5 @@ def _bytes_of(kind: FileKind, recording: Recording) -> bytes:
         return write_openface(recording).encode()
     if isinstance(recording, ArkitStream):
         return write_live_link(recording).encode()
+    assert isinstance(recording, Score), "what is written is of a kind that can be"  # noqa: S101 - for the type checker
     return write_emotionml(recording).encode()

@@ -1,0 +1,101 @@
+from __future__ import annotations
+
+import pytest
+from osc_bytes import message
+
+from agentface import Face
+from agentface.io.osc.codec import decode
+from agentface.io.osc.receiver import Receiver
+from tests.clocks import ManualClock
+from tests.heads import head_model
+
+ME, YOU = ("127.0.0.1", 1), ("127.0.0.1", 2)
+BLOCK = '<bml id="{0}" composition="{1}"><wait id="w" duration="0.5"/><gesture id="g"/></bml>'
+
+
+class Desk:
+    """A receiver on a clock of its own, with what it answered to whom."""
+
+    def __init__(self, *ids):
+        self.clock, self.answers = ManualClock(), []
+        made = [Face(head_model(), clock=self.clock, compiled=False) for _ in ids or "x"]
+        self.faces = made if not ids else dict(zip(ids, made, strict=True))
+        self.receiver = Receiver(self.faces if ids else made[0], self.reply, self.clock)
+        self.made = made
+
+    def reply(self, packet, sender):
+        self.answers.append((sender, decode(packet)[0]))
+
+    def send(self, text, sender=ME, address="/agentface/bml"):
+        self.receiver.take([(message(address, "s", text), sender)])
+
+    def run(self, seconds):
+        for face in self.made:
+            face._advance(seconds)
+
+    def told(self, sender=ME):
+        return [(each.address, *each.arguments) for to, each in self.answers if to == sender]
+
+
+FEEDBACK = "/agentface/bml/feedback"
+
+
+def test_the_sender_is_told_how_far_its_block_is():
+    desk = Desk()
+    desk.send(BLOCK.format("one", "MERGE"))
+    desk.send(BLOCK.format("two", "APPEND"), YOU)
+    note, *_ = desk.told()
+    assert note[:2] == (FEEDBACK, "one")
+    assert note[2].startswith("note: bml:1: g: expected what a face does, got <gesture>")
+    desk.answers.clear()
+    desk.run(1.45)
+    assert desk.told() == [
+        (FEEDBACK, "one", "start", 0.0),
+        (FEEDBACK, "one", "w:start", 0.0),
+        (FEEDBACK, "one", "w:end", 0.5),
+        (FEEDBACK, "one", "end", pytest.approx(1.4)),
+    ]
+    assert desk.told(YOU)[0] == (FEEDBACK, "two", "start", 0.0)
+
+
+def test_what_replaces_is_told_apart_from_what_it_replaces():
+    desk = Desk()
+    desk.send(BLOCK.format("one", "MERGE"))
+    desk.run(0.2)
+    desk.send(BLOCK.format("one", "REPLACE"), YOU)
+    desk.run(2.0)
+    assert desk.told()[-1][2] == "stopped"
+    assert [each[2] for each in desk.told(YOU)][1:] == ["start", "w:start", "w:end", "end"]
+
+
+def test_a_block_that_cannot_be_played_is_told():
+    desk = Desk()
+    desk.send('<bml id="a"><wait id="w" start="nobody:w:end"/></bml>')
+    desk.run(0.1)
+    assert desk.told()[-1][2].startswith("failed: bml:1: nobody:w:end: expected a sync point of a block")
+
+
+BAD = ("", "<bml/>", "no XML", '<bml id="a"><smile/></bml>', "<!DOCTYPE a [<!ENTITY b 'c'>]><bml/>")
+
+
+@pytest.mark.parametrize("bad", BAD)
+def test_what_is_no_block_is_an_error_and_nothing_of_it_happens(bad):
+    desk = Desk()
+    desk.send(bad)
+    ((address, about, reason, _),) = desk.told()
+    assert (address, about) == ("/agentface/error", "/agentface/bml")
+    assert "expected" in reason
+    assert desk.made[0].blocks.blocks == ()
+    assert desk.made[0].message_counts.errors["rejected"] == 1
+    desk.receiver.take([(message("/agentface/bml", "i", 3), ME)])
+    assert "as text" in desk.told()[-1][2]
+
+
+def test_of_several_faces_each_tells_of_its_own():
+    desk = Desk("left", "right")
+    desk.send(BLOCK.format("one", "MERGE"), address="/agentface/*/bml")
+    desk.send(BLOCK.format("two", "MERGE"), YOU, "/agentface/right/bml")
+    desk.answers.clear()
+    desk.run(1.45)
+    assert {each[0] for each in desk.told()} == {"/agentface/left/bml/feedback", "/agentface/right/bml/feedback"}
+    assert {each[0] for each in desk.told(YOU)} == {"/agentface/right/bml/feedback"}
