@@ -36,6 +36,7 @@ class Envelope:
         self._start, self._speed = np.zeros(size), np.zeros(size)
         self._travel, self._brake, self._elapsed = np.ones(size), np.ones(size), np.ones(size)
         self._settled = self._resting = True
+        self._brakes = False
 
     @property
     def settled(self) -> bool:
@@ -73,6 +74,7 @@ class Envelope:
             _MONOTONE,
         )
         self._elapsed[places] = 0.0
+        self._brakes = bool(self._speed.any())
         self._settle((self.value == self.target).all() and not self.velocity.any())
 
     def glide(self, value: npt.ArrayLike, velocity: npt.ArrayLike, fade: float, target: npt.ArrayLike = 0.0) -> None:
@@ -87,16 +89,18 @@ class Envelope:
             return self.value
         self._elapsed += dt
         u = np.minimum(self._elapsed / self._travel, 1.0)
-        w = np.minimum(self._elapsed / self._brake, 1.0)
-        distance = self.target - self._start
-        path = u**3 * (10.0 - 15.0 * u + 6.0 * u * u)
-        braked, braked_speed = braking(w)
-        value = self._start + distance * path + self._speed * self._brake * braked
-        self.velocity = distance / self._travel * 30.0 * u * u * (1.0 - u) ** 2
-        self.velocity += self._speed * braked_speed
-        there = (u > _ALMOST) & (w > _ALMOST)
+        distance, square, left = self.target - self._start, u * u, 1.0 - u
+        value = self._start + distance * (square * u * (10.0 - 15.0 * u + 6.0 * square))
+        self.velocity = distance / self._travel * (30.0 * square * left * left)
+        there = u > _ALMOST
+        if self._brakes:
+            w = np.minimum(self._elapsed / self._brake, 1.0)
+            braked, braked_speed = braking(w)
+            value += self._speed * self._brake * braked
+            self.velocity += self._speed * braked_speed
+            there &= w > _ALMOST
         self.velocity[there] = 0.0
-        self.value = np.where(there, self.target, np.clip(value, self.low, self.high))
+        self.value = np.where(there, self.target, np.minimum(np.maximum(value, self.low), self.high))
         self._settle(there.all())
         return self.value
 
