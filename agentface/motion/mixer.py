@@ -144,6 +144,7 @@ class Mixer(MutableMapping[str, Channel]):
         gesturing = GestureChannel(all_gestures() if gestures is None else gestures, lags_s)
         self.life = self._own("life", LifeChannel(table, random, self.gaze, blink, gesturing, lags_s))
         self.gestures = self._own("gestures", gesturing)
+        self.speech.follow(self.life)
         self.gaze.movers = [self.life, self.gestures]
         self.blink = self._own("blink", blink)
         self.muscles = self._own("muscles", MuscleChannel())

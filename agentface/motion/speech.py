@@ -16,6 +16,7 @@ from agentface.kernel import can_compile
 from agentface.motion.conflicts import SpeechYields, default_conflicts
 from agentface.motion.doing import Doing
 from agentface.motion.envelope import Envelope
+from agentface.motion.following import Follower, Following
 from agentface.motion.utterance import Utterance
 from agentface.motion.yielding import Yielding
 from agentface.speech.alphabets import Part, PhoneTable, phone_table
@@ -61,12 +62,18 @@ class SpeechChannel:
         self._shown: Utterance | None = None
         self._waiting: deque[Utterance] = deque()
         self._hushed = math.inf
+        self._following: Following | None = None
+        self._ended_at = 0.0
         size = self.articulation.size
         self._rest = Envelope(size, -_FURTHEST, _FURTHEST)
         self._sample, self._ahead = np.zeros(size), np.zeros(size)
         self._scratch = np.zeros(len(self.articulation.articulators))
         self._visemes = Envelope(len(self.articulation.visemes))
         self._until = np.full(len(self.articulation.visemes), math.inf)
+
+    def follow(self, follower: Follower) -> None:
+        """Tell ``follower``, which is advanced after this channel, of all that is said."""
+        self._following = Following(follower)
 
     @property
     def speaking(self) -> bool:
@@ -140,11 +147,13 @@ class SpeechChannel:
 
     def advance(self, dt: float) -> None:
         """Let ``dt`` seconds pass."""
-        end = self._now + dt
+        begin, end = self._now, self._now + dt
         while (event := self._next_event()) <= end:
             self._pass(max(event, self._now))
             self._happen()
         self._pass(end)
+        if self._following is not None:
+            self._following.tell(self._current, begin, end, self._ended_at)
 
     def write(self, values: Doubles, weights: Doubles) -> bool:
         """What is said now, and how much of what is felt it leaves."""
@@ -275,6 +284,6 @@ class SpeechChannel:
     def _tell_ended(self, utterance: Utterance, *, whole: bool) -> None:
         utterance.doing.end(whole=whole)
         if utterance is self._current:
-            self._current = None
+            self._current, self._ended_at = None, self._now
         for call in tuple(self.ended):
             call()

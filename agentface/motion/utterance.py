@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 from agentface.motion.doing import Doing
@@ -59,6 +59,18 @@ class Utterance:
         """It begins; ``now`` in s is the clock that all times from here on are on."""
         self._began = now
         self.doing.begun = True
+
+    @property
+    def began(self) -> float:
+        """When it began, on that clock."""
+        return self._began
+
+    def sounds(self, after: float, until: float) -> Iterator[tuple[str, float, float]]:
+        """The main viseme, the start and the length in s of the sounds that begin after a time, until another one."""
+        for phone, look in zip(self._phones, self._looks, strict=True):
+            start = self._began + phone.start_s
+            if after < start <= until:
+                yield look[0].visemes[0][0], start, phone.end_s - phone.start_s
 
     def local(self, now: float) -> float:
         """A time of the clock on the utterance's timeline."""
