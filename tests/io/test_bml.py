@@ -198,6 +198,11 @@ def test_the_example_is_known_by_its_content_and_plays(tmp_path):
     assert is_bml(b"\xef\xbb\xbf<?xml version='1.0'?>\n<!-- <emotionml> -->\n<b:bml xmlns:b='x' id='x'/>")
 
 
+def test_a_beginning_of_many_comments_is_known_soon():
+    assert not is_bml(b"<!-- --><?x ?> " * 4000)
+    assert is_bml(b"<!-- --><?x ?> " * 4000 + b"<bml>")
+
+
 def block_or_faults(data):
     try:
         block = read_bml(data, "x.bml")

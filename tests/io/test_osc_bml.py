@@ -1,11 +1,17 @@
 from __future__ import annotations
 
+import socket
+import time
+
 import pytest
 from osc_bytes import message
+from pythonosc.osc_message import OscMessage
+from pythonosc.osc_message_builder import OscMessageBuilder
 
 from agentface import Face
 from agentface.io.osc.codec import decode
 from agentface.io.osc.receiver import Receiver
+from agentface.io.osc.server import OscServer
 from tests.clocks import ManualClock
 from tests.heads import head_model
 
@@ -99,3 +105,24 @@ def test_of_several_faces_each_tells_of_its_own():
     desk.run(1.45)
     assert {each[0] for each in desk.told()} == {"/agentface/left/bml/feedback", "/agentface/right/bml/feedback"}
     assert {each[0] for each in desk.told(YOU)} == {"/agentface/right/bml/feedback"}
+
+
+def test_a_real_client_hears_of_its_block():
+    builder = OscMessageBuilder("/agentface/bml")
+    builder.add_arg(BLOCK.format("one", "MERGE"))
+    heard = []
+    with (
+        Face(head_model(), compiled=False) as face,
+        OscServer(face, port=0) as server,
+        socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as client,
+    ):
+        client.settimeout(20)
+        client.sendto(builder.build().dgram, ("127.0.0.1", server.port))
+        while not face.blocks.blocks:
+            server.take_in()
+            time.sleep(0.001)
+        face._advance(2.0)
+        while not heard or heard[-1][1] != "end":
+            heard.append(OscMessage(client.recv(4096)).params)
+    assert [what for _, what, _ in heard[1:]] == ["start", "w:start", "w:end", "end"]
+    assert heard[-1][2] == pytest.approx(1.4)

@@ -24,7 +24,7 @@ LARGEST_FILE = 256 * 1024
 MOST_BEHAVIORS = 100
 MOST_CONSTRAINTS = 300
 _BOTH = (STARTS, ENDS)
-_ROOT = re.compile(rb"(?:<\?.*?\?>|<!--.*?-->|\s)*<(?:[\w.-]+:)?bml[\s>/]", re.DOTALL)
+_ROOT = re.compile(rb"(?>(?>\s+|<\?.*?\?>|<!--.*?-->)*)<(?:[\w.-]+:)?bml[\s>/]", re.DOTALL)
 
 
 def is_bml(begin: bytes) -> bool:
