@@ -165,7 +165,7 @@ class SpeechChannel:
         if not self._visemes.resting:
             sample += (1.0 - min(max(sample[-1], 0.0), 1.0)) * self._mixed()
         tight = max(sample[-2], 0.0)
-        np.clip(sample, -1.0, 1.0, out=sample)
+        np.minimum(np.maximum(sample, -1.0, out=sample), 1.0, out=sample)
         sample[-2], sample[-1] = tight, max(sample[-1], 0.0)
         self._yielding.write(sample, values, weights)
         return True

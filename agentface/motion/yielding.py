@@ -34,7 +34,7 @@ class Yielding:
         self._speaking, self._rounding, self._closure = np.ascontiguousarray(shares.T)
         self._said = len(articulation.names)
         self._rounds, self._closes = (
-            np.array([articulation.names.index(name) for name in names if name in articulation.names], np.intp)
+            tuple(articulation.names.index(name) for name in names if name in articulation.names)
             for names in (yields.rounds, yields.closes)
         )
         self._jaw = articulation.jaw
@@ -44,8 +44,7 @@ class Yielding:
         """What a sample ``(P + 2,)`` wants of ``names``, as values and weights of a channel that replaces."""
         offset, keep, part = self._offset, self._keep, self._part
         said, tight, speaking = sample[: self._said], sample[-2], sample[-1]
-        rounding = 1.0 - np.prod(1.0 - np.maximum(said[self._rounds], 0.0))
-        closure = 1.0 - np.prod(1.0 - np.maximum(said[self._closes], 0.0))
+        rounding, closure = _together(said, self._rounds), _together(said, self._closes)
         offset[: self._said] = said
         widest = 1.0 / math.expm1(tight) if tight > 0.0 else math.inf
         offset[self._jaw] = _smaller(offset[self._jaw], widest)
@@ -64,6 +63,14 @@ class Yielding:
         np.divide(offset, keep, out=offset, where=keep > 0.0)
         np.take(offset, self._rows, out=values)
         np.take(keep, self._rows, out=weights)
+
+
+def _together(said: Doubles, places: tuple[int, ...]) -> float:
+    """0..1, as much as any of some parameters, and more where several go together."""
+    left = 1.0
+    for place in places:
+        left *= 1.0 - max(float(said[place]), 0.0)
+    return 1.0 - left
 
 
 def _smaller(one: float, other: float) -> float:
