@@ -15,7 +15,7 @@ from agentface.resources import face_names
 from agentface.studies.harvard import harvard
 from agentface.studies.speech_laws import LAWS, STATES, Manner, SpeakingMouth, broken
 
-SETTINGS = ((1.0, 1.0), (0.6, 1.0), (1.6, 1.0), (1.0, 0.4), (1.0, 1.8))
+SETTINGS = ((1.0, 1.0), (0.6, 0.4), (0.6, 1.8), (1.6, 0.4), (1.6, 1.8))
 """Rates and loudnesses."""
 _FRAMES = 600
 
