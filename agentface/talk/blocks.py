@@ -103,7 +103,7 @@ class BlockPlayer:
         self.told: list[Callable[[Progress], object]] = []
         self.failed: list[Callable[[str, AgentFaceError], object]] = []
         self.error: AgentFaceError | None = None
-        self._scene = Staging(self._face, self._ask)
+        self._staging = Staging(self._face, self._ask)
         self._now = 0.0
         self._own = False
         self._events: list[tuple[float, int, _Run, Callable[[], None]]] = []
@@ -151,6 +151,8 @@ class BlockPlayer:
         self._now += dt
         while (done := self._speaker.take()) is not None:
             self._take(done)
+        for run in [run for run in self._runs if run.doing.outcome is not None]:
+            self._take_back(run)
         while True:
             while self._events and self._events[0][0] <= self._now + _SAME_S:
                 *_, run, happens = heappop(self._events)
@@ -172,13 +174,13 @@ class BlockPlayer:
         if self._own:
             return
         if isinstance(request, Neutral):
-            self._scene.forget()
+            self._staging.forget()
             self.stop(request.fade)
         elif isinstance(request, SetEmotion):
-            self._scene.felt(request.emotion, request.intensity)
+            self._staging.felt(request.emotion, request.intensity)
         elif isinstance(request, SetEmotions):
             for name, level in request.state.items():
-                self._scene.felt(name, level)
+                self._staging.felt(name, level)
 
     def close(self) -> None:
         """End the voices."""
@@ -268,30 +270,30 @@ class BlockPlayer:
         self, run: _Run, behavior: Behavior, times: Sequence[float], spoken: Mapping[str, Spoken]
     ) -> Iterator[tuple[str, Callable[[], None]]]:
         """What is done at which sync point."""
-        does, scene, owner = behavior.does, self._scene, (run, behavior.id)
+        does, staging, owner = behavior.does, self._staging, (run, behavior.id)
         fades = [later - earlier for earlier, later in pairwise(times)]
         if isinstance(does, Text):
             yield STARTS, partial(self._say, run, spoken[behavior.id])
             yield ENDS, partial(setattr, run, "speaking", False)
         elif isinstance(does, Aim):
             if behavior.kind == "gaze":
-                yield STARTS, partial(scene.look, owner, does, fades[0])
-                yield "relax", partial(scene.look_back, owner, fades[-1])
+                yield STARTS, partial(staging.look, owner, does, fades[0])
+                yield "relax", partial(staging.look_back, owner, fades[-1])
             else:
-                shift = scene.shift_look if behavior.kind == "gaze_shift" else scene.shift_head
+                shift = staging.shift_look if behavior.kind == "gaze_shift" else staging.shift_head
                 yield STARTS, partial(shift, does, fades[0])
         elif isinstance(does, Nod):
-            yield ENDS, partial(scene.nodded, owner)
+            yield ENDS, partial(staging.nodded, owner)
         elif does is not None and behavior.kind == "face":
-            yield STARTS, partial(scene.show, owner, does, fades[0])
-            yield "relax", partial(scene.let_go, owner, fades[-1])
+            yield STARTS, partial(staging.show, owner, does, fades[0])
+            yield "relax", partial(staging.let_go, owner, fades[-1])
         elif does is not None:
-            yield STARTS, partial(scene.shift, does, fades[0])
+            yield STARTS, partial(staging.shift, does, fades[0])
 
     def _plan_nods(self, run: _Run, behavior: Behavior, nod: Nod, start: float, length: float) -> None:
         each = length / nod.times
         for number in range(nod.times):
-            self._at(run, start + number * each, partial(self._scene.nod, (run, behavior.id), nod, each))
+            self._at(run, start + number * each, partial(self._staging.nod, (run, behavior.id), nod, each))
 
     def _say(self, run: _Run, spoken: Spoken) -> None:
         run.speaking = True
@@ -311,11 +313,24 @@ class BlockPlayer:
             waiting.doing.end(whole=False)
             self._tell_all(Progress(waiting.block.id, STOPPED, 0.0))
 
+    def _take_back(self, run: _Run) -> None:
+        """End one block that somebody no longer wants."""
+        fade = bml_table().let_go_s
+        self._runs.remove(run)
+        run.over = True
+        for behavior in run.block.behaviors:
+            self._staging.let_go((run, behavior.id), fade)
+            self._staging.look_back((run, behavior.id), fade)
+            self._staging.end_nod((run, behavior.id))
+        if run.speaking:
+            self._ask(Hush())
+        self._tell(run, STOPPED)
+
     def _stop_runs(self, fade: float) -> None:
         runs, self._runs = self._runs, []
         if not runs:
             return
-        self._scene.clear(fade)
+        self._staging.clear(fade)
         if any(run.speaking for run in runs):
             self._ask(Hush())
         for run in runs:
