@@ -186,6 +186,16 @@ def test_others_wait_for_the_words_of_a_speech(stage):
     assert stage.face.talker.texts == ()
 
 
+def test_others_wait_for_a_loudspeaker_that_is_late(stage):
+    stage.face.talker.latency_s = 0.06
+    stage.play(SPEECH)
+    stage.run(2.0)
+    (spoke, speak), *_ = stage.of(Speak)
+    assert (spoke, speak.start) == pytest.approx((0.5, 0.06)), "what is heard begins 0.56 s from now"
+    assert stage.when("s:start") == pytest.approx([0.56])
+    assert stage.when("s:there") == stage.when("f:start") == pytest.approx([0.56 + 0.11])
+
+
 def test_what_is_spoken_before_is_the_same(stage):
     voiced = speak_block(HundredthsVoice(), block(SPEECH))
     times = spoken_timetable(voiced).times
