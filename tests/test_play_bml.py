@@ -14,33 +14,18 @@ from agentface.io.bml.reader import load_bml
 from agentface.live.blocks import SETTLES_S, BlockSource
 from agentface.live.loop import run
 from agentface.parameters import NAMES
-from agentface.speech.phones import Phone
-from agentface.speech.sound import Sound
-from agentface.speech.voices.voice import SILENCE, Voiced
+from agentface.speech.voices.voice import SILENCE
 from agentface.talk.block_speech import block_sound, speak_block, spoken_timetable
 from tests.heads import head_model
 from tests.tools import require
+from tests.voices import RATE, HundredthsVoice
 
 GREETING = Path(__file__).parent.parent / "examples" / "greeting.bml"
-RATE, FPS = 8000, 30.0
+FPS = 30.0
 SPEAKS = (
     '<bml id="b"><speech id="s" start="0.5"><text>Mama saw a map.</text></speech>'
     '<faceLexeme id="f" lexeme="SMILE" end="s:end"/></bml>'
 )
-
-
-class HundredthsVoice:
-    """A hundredth of a second a character."""
-
-    name = "fake"
-
-    def speak(self, sentence, rate=1.0, marks=()):
-        length = 0.01 * len(sentence)
-        sound = Sound(np.full(round(RATE * length), 1000, np.int16), RATE)
-        return Voiced(sound, (Phone("aa", 0.0, length),), tuple(0.01 * mark for mark in marks))
-
-    def close(self):
-        pass
 
 
 class Poses:

@@ -46,6 +46,22 @@ class FakeVoice:
         self.closed = True
 
 
+class HundredthsVoice:
+    """A hundredth of a second for each character, all of it one open vowel: so a word is heard when it begins."""
+
+    name = "fake"
+
+    def speak(self, sentence, rate=1.0, marks=()):
+        if sentence.startswith("Bad"):
+            raise SpeechError("no voice for that")
+        length = 0.01 * len(sentence)
+        sound = Sound(np.full(round(RATE * length), 1000, np.int16), RATE)
+        return Voiced(sound, (Phone("aa", 0.0, length),), tuple(0.01 * mark for mark in marks))
+
+    def close(self):
+        pass
+
+
 class Still:
     """A deformer whose skin never moves."""
 

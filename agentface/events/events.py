@@ -12,7 +12,7 @@ from typing import Any, Protocol
 from agentface.errors import InvalidValueError, UnknownNameError
 from agentface.motion.doing import Doing
 from agentface.motion.performance import LET_GO_S
-from agentface.requests import Gesture, Hush, Play, Request, Say, Speak
+from agentface.requests import Gesture, Hush, Play, PlayBlock, Request, Say, Speak
 
 EVENTS = ("spoken", "hushed", "failed", "gestured", "played")
 """What a program can be told of."""
@@ -140,6 +140,8 @@ class Events:
             self._face.apply(Hush())
         elif isinstance(going.request, Play):
             self._face.apply(Play(None, LET_GO_S))
+        elif isinstance(going.request, PlayBlock):
+            going.doing.end(whole=False)
 
     def _tell(self, going: _Going) -> None:
         doing = going.doing

@@ -7,8 +7,9 @@ from collections.abc import Iterable, Sequence
 from concurrent.futures import Future
 from typing import Any
 
+from agentface.bml.block import Block
 from agentface.motion.performance import Performance
-from agentface.requests import Gesture, Play, Request, Say, Speak
+from agentface.requests import Gesture, Play, PlayBlock, Request, Say, Speak
 from agentface.speech.phones import Phone
 
 
@@ -17,8 +18,8 @@ class AwaitableTwins(ABC):
 
     Whatever loop steps the face, in whatever thread, begins with its next step; they only wait. Wrong arguments are
     raised at once, what only the face can tell, such as a gesture that it does not have, out of the ``await``.
-    Cancelled, what has not begun does not begin; a text or sounds that are being said are hushed, a performance lets
-    go, and a gesture comes to its end.
+    Cancelled, what has not begun does not begin; a text or sounds that are being said are hushed, a performance and a
+    block let go, and a gesture comes to its end.
     """
 
     @abstractmethod
@@ -58,6 +59,10 @@ class AwaitableTwins(ABC):
     async def play_async(self, performance: Performance, *, fade: float = 0.0) -> bool:
         """As :meth:`Face.play`, until its last frame, or until something else is played."""
         return await _over(self.ask(Play(performance, fade)))
+
+    async def play_block_async(self, block: Block) -> bool:
+        """As :meth:`Face.play_block`, until it is over or replaced; raises what keeps it from being played."""
+        return await _over(self.ask(PlayBlock(block)))
 
 
 async def _over(future: Future[bool]) -> bool:

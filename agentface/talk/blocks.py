@@ -34,6 +34,9 @@ _SAME_S = 1e-9
 class SpeechPerformer(Protocol):
     """What says a speech."""
 
+    latency_s: float
+    """How much later than it is performed a speech is shown and heard."""
+
     def perform(self, spoken: Spoken, *, interrupt: bool = False) -> object:
         """Say what is spoken already."""
 
@@ -103,7 +106,7 @@ class BlockPlayer:
         self.told: list[Callable[[Progress], object]] = []
         self.failed: list[Callable[[str, AgentFaceError], object]] = []
         self.error: AgentFaceError | None = None
-        self._scene = Staging(self._face, self._ask)
+        self._staging = Staging(self._face, self._ask)
         self._now = 0.0
         self._own = False
         self._events: list[tuple[float, int, _Run, Callable[[], None]]] = []
@@ -151,6 +154,8 @@ class BlockPlayer:
         self._now += dt
         while (done := self._speaker.take()) is not None:
             self._take(done)
+        for run in [run for run in self._runs if run.doing.outcome is not None]:
+            self._take_back(run)
         while True:
             while self._events and self._events[0][0] <= self._now + _SAME_S:
                 *_, run, happens = heappop(self._events)
@@ -172,13 +177,13 @@ class BlockPlayer:
         if self._own:
             return
         if isinstance(request, Neutral):
-            self._scene.forget()
+            self._staging.forget()
             self.stop(request.fade)
         elif isinstance(request, SetEmotion):
-            self._scene.felt(request.emotion, request.intensity)
+            self._staging.felt(request.emotion, request.intensity)
         elif isinstance(request, SetEmotions):
             for name, level in request.state.items():
-                self._scene.felt(name, level)
+                self._staging.felt(name, level)
 
     def close(self) -> None:
         """End the voices."""
@@ -216,10 +221,12 @@ class BlockPlayer:
 
     def _begin(self, waiting: _Waiting) -> None:
         block = waiting.block
+        early = self._face.talker.latency_s if block.speeches else 0.0
+        start = self._now + early
         try:
             spoken = performed(block, {name: joined(parts) for name, parts in waiting.parts.items()})
             steps = {name: each for name, (_, each) in spoken.items()}
-            times = schedule(block, steps, self._outside)
+            times = schedule(block, steps, partial(self._outside, start))
         except AgentFaceError as error:
             self._fail(waiting, error)
             return
@@ -228,15 +235,15 @@ class BlockPlayer:
             self._stop_runs(bml_table().let_go_s)
         self._waiting.remove(waiting)
         waiting.doing.begun = True
-        run = _Run(block, waiting.doing, self._now, times)
+        run = _Run(block, waiting.doing, start, times)
         self._runs.append(run)
         self._remember(run)
         self._at(run, 0.0, partial(self._tell, run, STARTS))
         for behavior in block.behaviors:
-            self._plan(run, behavior, {name: each for name, (each, _) in spoken.items()})
+            self._plan(run, behavior, {name: each for name, (each, _) in spoken.items()}, early)
         self._at(run, times.end_s, partial(self._end, run))
 
-    def _outside(self, point: SyncPoint) -> float | None:
+    def _outside(self, start: float, point: SyncPoint) -> float | None:
         run = self._over.get(point.block)
         if run is None:
             return None
@@ -244,7 +251,7 @@ class BlockPlayer:
             time: float | None = 0.0 if point.name == STARTS else run.times.end_s
         else:
             time = run.times.times.get(SyncPoint(point.behavior, point.name))
-        return None if time is None else run.start + time - self._now
+        return None if time is None else run.start + time - start
 
     def _remember(self, run: _Run) -> None:
         self._over.pop(run.block.id, None)
@@ -252,46 +259,45 @@ class BlockPlayer:
         while len(self._over) > _MOST_OVER:
             del self._over[next(iter(self._over))]
 
-    def _plan(self, run: _Run, behavior: Behavior, spoken: Mapping[str, Spoken]) -> None:
-        """Have everything that a behavior does happen in its time."""
+    def _plan(self, run: _Run, behavior: Behavior, spoken: Mapping[str, Spoken], early: float) -> None:
+        """Have everything that a behavior does happen in its time; it is told to speak ``early`` by so much."""
         times = run.times.of(behavior)
-        acts = dict(self._acts(run, behavior, times, spoken))
+        acts = dict(self._acts(run, behavior, times))
         for name, time in zip(behavior.points, times, strict=True):
-            if name in acts:
+            if isinstance(behavior.does, Text) and name == STARTS:
+                self._at(run, time - early, partial(self._say, run, spoken[behavior.id]))
+            elif name in acts:
                 self._at(run, time, acts[name])
             if isinstance(behavior.does, Nod) and name == STARTS:
                 self._plan_nods(run, behavior, behavior.does, times[0], times[-1] - times[0])
             if behavior.kind != "other":
                 self._at(run, time, partial(self._tell, run, f"{behavior.id}:{name}"))
 
-    def _acts(
-        self, run: _Run, behavior: Behavior, times: Sequence[float], spoken: Mapping[str, Spoken]
-    ) -> Iterator[tuple[str, Callable[[], None]]]:
+    def _acts(self, run: _Run, behavior: Behavior, times: Sequence[float]) -> Iterator[tuple[str, Callable[[], None]]]:
         """What is done at which sync point."""
-        does, scene, owner = behavior.does, self._scene, (run, behavior.id)
+        does, staging, owner = behavior.does, self._staging, (run, behavior.id)
         fades = [later - earlier for earlier, later in pairwise(times)]
         if isinstance(does, Text):
-            yield STARTS, partial(self._say, run, spoken[behavior.id])
             yield ENDS, partial(setattr, run, "speaking", False)
         elif isinstance(does, Aim):
             if behavior.kind == "gaze":
-                yield STARTS, partial(scene.look, owner, does, fades[0])
-                yield "relax", partial(scene.look_back, owner, fades[-1])
+                yield STARTS, partial(staging.look, owner, does, fades[0])
+                yield "relax", partial(staging.look_back, owner, fades[-1])
             else:
-                shift = scene.shift_look if behavior.kind == "gaze_shift" else scene.shift_head
+                shift = staging.shift_look if behavior.kind == "gaze_shift" else staging.shift_head
                 yield STARTS, partial(shift, does, fades[0])
         elif isinstance(does, Nod):
-            yield ENDS, partial(scene.nodded, owner)
+            yield ENDS, partial(staging.nodded, owner)
         elif does is not None and behavior.kind == "face":
-            yield STARTS, partial(scene.show, owner, does, fades[0])
-            yield "relax", partial(scene.let_go, owner, fades[-1])
+            yield STARTS, partial(staging.show, owner, does, fades[0])
+            yield "relax", partial(staging.let_go, owner, fades[-1])
         elif does is not None:
-            yield STARTS, partial(scene.shift, does, fades[0])
+            yield STARTS, partial(staging.shift, does, fades[0])
 
     def _plan_nods(self, run: _Run, behavior: Behavior, nod: Nod, start: float, length: float) -> None:
         each = length / nod.times
         for number in range(nod.times):
-            self._at(run, start + number * each, partial(self._scene.nod, (run, behavior.id), nod, each))
+            self._at(run, start + number * each, partial(self._staging.nod, (run, behavior.id), nod, each))
 
     def _say(self, run: _Run, spoken: Spoken) -> None:
         run.speaking = True
@@ -311,11 +317,24 @@ class BlockPlayer:
             waiting.doing.end(whole=False)
             self._tell_all(Progress(waiting.block.id, STOPPED, 0.0))
 
+    def _take_back(self, run: _Run) -> None:
+        """End one block that somebody no longer wants."""
+        fade = bml_table().let_go_s
+        self._runs.remove(run)
+        run.over = True
+        for behavior in run.block.behaviors:
+            self._staging.let_go((run, behavior.id), fade)
+            self._staging.look_back((run, behavior.id), fade)
+            self._staging.end_nod((run, behavior.id))
+        if run.speaking:
+            self._ask(Hush())
+        self._tell(run, STOPPED)
+
     def _stop_runs(self, fade: float) -> None:
         runs, self._runs = self._runs, []
         if not runs:
             return
-        self._scene.clear(fade)
+        self._staging.clear(fade)
         if any(run.speaking for run in runs):
             self._ask(Hush())
         for run in runs:
@@ -327,7 +346,7 @@ class BlockPlayer:
         heappush(self._events, (run.start + time, next(self._count), run, happens))
 
     def _tell(self, run: _Run, what: str) -> None:
-        self._tell_all(Progress(run.block.id, what, self._now - run.start))
+        self._tell_all(Progress(run.block.id, what, max(self._now - run.start, 0.0)))
 
     def _tell_all(self, progress: Progress) -> None:
         for tell in tuple(self.told):

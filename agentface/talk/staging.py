@@ -19,7 +19,7 @@ _Key: TypeAlias = tuple[str | int, str | None]
 
 
 class _Gaze(Protocol):
-    """What a scene asks of the channel of the gaze."""
+    """What a staging asks of the channel of the gaze."""
 
     @property
     def point(self) -> Point | None:
@@ -35,7 +35,7 @@ class _Eyes(Protocol):
 
 
 class Staged(Protocol):
-    """What a scene needs of its face."""
+    """What a staging needs of its face."""
 
     @property
     def model(self) -> HeadModel:
@@ -65,7 +65,7 @@ class Staging:
     face goes back to what a shift has made its own, or to what it showed before.
 
     Args:
-        face: whose scene it is.
+        face: what is moved.
         ask: asks something of it.
     """
 
@@ -146,6 +146,12 @@ class Staging:
         """It is done."""
         self._nods.pop(owner, None)
 
+    def end_nod(self, owner: _Owner) -> None:
+        """End it before its time."""
+        gesture = self._nods.pop(owner, None)
+        if gesture is not None:
+            self._ask(Gesture(gesture, 0.0))  # one of no strength takes the place of the one that goes on
+
     def clear(self, fade: float) -> None:
         """Go back to what was before all of it."""
         keys = self._asked.keys() | self._shifted.keys()
@@ -157,9 +163,8 @@ class Staging:
         if looks:
             self._look_as_before(fade)
         self._head_back(fade)
-        for gesture in dict.fromkeys(self._nods.values()):
-            self._ask(Gesture(gesture, 0.0))  # one of no strength takes the place of the one that goes on
-        self._nods = {}
+        for owner in tuple(self._nods):
+            self.end_nod(owner)
 
     def forget(self) -> None:
         """Somebody else has let go of everything."""

@@ -5,17 +5,20 @@ from __future__ import annotations
 import asyncio
 import inspect
 import threading
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from agentface import Face
+from agentface.bml.block import Behavior, Block
 from agentface.errors import InvalidValueError, UnknownNameError
 from agentface.motion.performance import Performance
 from agentface.parameters import COUNT
 from tests.voices import talking_face
 
-TWINS = ("say", "speak", "gesture", "play")
+TWINS = ("say", "speak", "gesture", "play", "play_block")
+WAITS = Behavior("w", "wait", 1, None, (0.6,))
 
 
 @pytest.fixture(params=["same loop", "another thread"])
@@ -77,6 +80,7 @@ def test_one_after_the_other(awaited):
             face.gesture_async("nod"),
             face.speak_async([("aa", 0.0, 0.5)]),
             face.play_async(Performance(np.array([0.0, 0.4]), np.zeros((2, COUNT)), np.zeros((2, COUNT)))),
+            face.play_block_async(Block("b", (WAITS,))),
             face.say_async("One."),
         ):
             outcomes.append(await call)
@@ -84,8 +88,8 @@ def test_one_after_the_other(awaited):
         return outcomes, np.diff(times), face.channels.gestures.gestures["nod"].length_s
 
     outcomes, took, nod = awaited(calls)
-    assert outcomes == [True] * 4
-    assert (took >= np.array([nod, 0.5, 0.4, 1.0]) - 0.021).all()
+    assert outcomes == [True] * 5
+    assert (took >= np.array([nod, 0.5, 0.4, 0.6, 1.0]) - 0.021).all()
 
 
 def test_a_barge_in_cancels_what_is_said(awaited):
@@ -103,6 +107,18 @@ def test_a_barge_in_cancels_what_is_said(awaited):
         return second, face.talker.texts
 
     assert awaited(calls) == (False, ())
+
+
+def test_a_block_that_is_cancelled_ends(awaited):
+    async def calls(face):
+        long = asyncio.create_task(face.play_block_async(Block("long", (replace(WAITS, usual_s=(1e6,)),))))
+        after = asyncio.create_task(face.play_block_async(Block("after", (WAITS,), "APPEND")))
+        while len(face.blocks.blocks) < 2:
+            await asyncio.sleep(0)
+        long.cancel()
+        return await after
+
+    assert awaited(calls) is True
 
 
 def test_hush_ends_the_wait(awaited):

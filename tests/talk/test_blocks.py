@@ -5,36 +5,16 @@ import pytest
 
 from agentface import Face
 from agentface.bml.table import bml_table
-from agentface.errors import InvalidValueError, SpeechError
+from agentface.errors import InvalidValueError
 from agentface.io.bml.reader import read_bml
 from agentface.live.notes import Replay
 from agentface.parameters import NAMES
 from agentface.requests import Gesture, Hush, LookAt, PlayBlock, SetActionUnit, SetEmotion, SetGaze, SetHead, Speak
-from agentface.speech.phones import Phone
-from agentface.speech.sound import Sound
 from agentface.speech.speaker import Speaker
-from agentface.speech.voices.voice import Voiced
 from agentface.talk.block_speech import speak_block, spoken_timetable
 from agentface.talk.blocks import MOST_BLOCKS, BlockPlayer
 from tests.heads import head_model
-
-RATE = 8000
-
-
-class HundredthsVoice:
-    """A hundredth of a second a character: so a word is heard when its first one is."""
-
-    name = "fake"
-
-    def speak(self, sentence, rate=1.0, marks=()):
-        if sentence.startswith("Bad"):
-            raise SpeechError("no voice for that")
-        length = 0.01 * len(sentence)
-        sound = Sound(np.full(round(RATE * length), 1000, np.int16), RATE)
-        return Voiced(sound, (Phone("aa", 0.0, length),), tuple(0.01 * mark for mark in marks))
-
-    def close(self):
-        pass
+from tests.voices import HundredthsVoice
 
 
 def block(inside, name="b", **attributes):
@@ -206,6 +186,16 @@ def test_others_wait_for_the_words_of_a_speech(stage):
     assert stage.face.talker.texts == ()
 
 
+def test_others_wait_for_a_loudspeaker_that_is_late(stage):
+    stage.face.talker.latency_s = 0.06
+    stage.play(SPEECH)
+    stage.run(2.0)
+    (spoke, speak), *_ = stage.of(Speak)
+    assert (spoke, speak.start) == pytest.approx((0.5, 0.06)), "what is heard begins 0.56 s from now"
+    assert stage.when("s:start") == pytest.approx([0.56])
+    assert stage.when("s:there") == stage.when("f:start") == pytest.approx([0.56 + 0.11])
+
+
 def test_what_is_spoken_before_is_the_same(stage):
     voiced = speak_block(HundredthsVoice(), block(SPEECH))
     times = spoken_timetable(voiced).times
@@ -303,6 +293,27 @@ def test_what_is_taken_back_while_it_waits_is_not_played(stage):
     stage.run(2.0)
     assert stage.when("start", "b") == []
     assert stage.when("stopped", "b") == [0.5]
+
+
+def test_one_block_is_taken_back_while_others_go_on(stage):
+    stage.play('<faceLexeme id="f" lexeme="SMILE" end="3"/>', "a")
+    inside = (
+        '<faceLexeme id="f" lexeme="SMILE" amount="1" end="9"/><gaze id="g" target="LEFT" end="9"/>'
+        '<head id="n" lexeme="NOD" end="9"/><speech id="s"><text>A text of many words that is hushed.</text></speech>'
+    )
+    doing = stage.face.apply(PlayBlock(block(inside, "b")))
+    stage.player.wait()
+    stage.run(0.2)
+    doing.end(whole=False)
+    poses = stage.run(1.0)
+    assert stage.when("stopped", "b") == [0.2]
+    assert stage.when("stopped", "a") == []
+    assert stage.face.emotion["happiness"] == 0.5
+    assert len(stage.of(Hush)) == 1
+    left = {name: abs(poses[-1, NAMES.index(name)]) for name in ("gaze_yaw", "head_pitch")}
+    assert max(left.values()) < 1e-6
+    stage.run(3.0)
+    assert stage.face.emotion["happiness"] == 0.0
 
 
 def test_what_goes_on_says_how_it_ended(stage):
