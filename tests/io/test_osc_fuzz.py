@@ -16,6 +16,10 @@ from tests.clocks import ManualClock
 from tests.voices import talking_face
 
 BATCH = 50
+BLOCK = (
+    '<bml xmlns="http://www.bml-initiative.org/bml/bml-1.0" id="b" composition="REPLACE"><head id="h" lexeme="NOD"/>'
+    '<speech id="s"><text>Yes, <sync id="x"/>no.</text></speech><faceLexeme id="f" lexeme="SMILE" start="s:x"/></bml>'
+)
 GOOD = {
     "emotion": ("sf", "joy", 0.5),
     "emotions": ("sfsf", "joy", 0.5, "fear", 0.25),
@@ -38,6 +42,7 @@ GOOD = {
     "gesture": ("sf", "nod", 0.5),
     "liveliness": ("f", 0.5),
     "state": ("s", "listening"),
+    "bml": ("s", BLOCK),
 }
 WORDS = (
     *("joy", "neutral", "risorius", "jaw_open", "head_yaw", "aa", "viseme_PP", "nod", "wink", "speaking", "jawOpen"),
@@ -139,12 +144,11 @@ def fuzz(packets, seed):
             pose = face.pose.array
             assert ((pose >= LOW) & (pose <= HIGH)).all(), f"batch {batch} of seed {seed}"
         for packet in answers:
-            assert decode(packet)[0].address.split("/")[-1] in ("error", "status")
+            assert decode(packet)[0].address.split("/")[-1] in ("error", "status", "feedback")
         assert answers
         return face.status()
 
 
-@pytest.mark.slow
 def test_ten_thousand_packets_lose_no_good_one():
     status = fuzz(10_000, seed=0)
     assert all(count > 100 for count in status["errors"].values()), "each way of being wrong is there"

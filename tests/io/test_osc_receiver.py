@@ -138,6 +138,19 @@ def test_what_only_the_face_can_refuse_is_answered_too(desk):
     assert desk.face.message_counts.messages == 0
 
 
+def test_what_the_face_refuses_takes_the_place_of_nothing(desk):
+    desk.take(
+        message("/agentface/gaze", "fff", 10.0, 0.0, 0.0),
+        message("/agentface/gaze", "fff", 20.0, 0.0, 0.0),
+        message("/agentface/look_at", "fff", 0.0, 0.0, -1.0),
+        message("/agentface/look_at", "fff", 0.0, 0.0, -2.0),
+    )
+    desk.face.step(1.0)
+    assert desk.face.status()["gaze_deg"] == [20, 0]
+    assert [answer.arguments[0] for answer in desk.said()] == ["/agentface/look_at"] * 2
+    assert desk.face.message_counts.messages == 2
+
+
 def test_neutral_as_an_emotion_keeps_the_muscles(desk):
     desk.take(message("/agentface/emotion", "sf", "joy", 0.5), message("/agentface/muscle", "sf", "risorius", 0.5))
     desk.take(message("/agentface/emotion", "sf", "neutral", 1.0))

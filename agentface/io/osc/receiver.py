@@ -21,8 +21,8 @@ from agentface.requests import PlayBlock
 ANSWERS_AT_ONCE, ANSWERS_A_SECOND = 200.0, 100.0
 MOST_FACES = 8
 """So many faces share a server; their status together fits into one datagram."""
-_Newest: TypeAlias = dict[tuple[Hashable, ...], tuple[str, Waiting]]
-"""By face and key, the face's id and what is asked of it."""
+_Newest: TypeAlias = dict[tuple[Hashable, ...], tuple[str, list[Waiting]]]
+"""By face and key, the face's id and what is asked of it, the newest last."""
 
 
 class Receiver:
@@ -65,8 +65,9 @@ class Receiver:
                 continue
             for message in messages:
                 self._take_one(message, sender, newest, askers)
-        for face, waiting in newest.values():
-            self._apply(face, waiting)
+        for face, asked in newest.values():
+            while asked and not self._apply(face, asked.pop()):
+                pass  # what a face refuses takes the place of nothing
         for sender, address in askers:
             if self._statuses.take():
                 self._reply(encode(address, json.dumps(self._status(address), allow_nan=False)), sender)
@@ -109,10 +110,11 @@ class Receiver:
         # Taken out first: requests are applied in the order of their newest message.
         for face in self.addresses.ids(waiting.address):
             key = face, *waiting.request.key
-            newest.pop(key, None)
-            newest[key] = face, waiting
+            asked = newest.pop(key, (face, []))[1]
+            asked.append(waiting)
+            newest[key] = face, asked
 
-    def _apply(self, face: str, waiting: Waiting) -> None:
+    def _apply(self, face: str, waiting: Waiting) -> bool:
         try:
             doing = self._faces[face].apply(waiting.request)
             if isinstance(waiting.request, PlayBlock):
@@ -120,9 +122,10 @@ class Receiver:
                 self._feedback.expect(self._faces[face], address, waiting.request.block, waiting.sender)
         except AgentFaceError as error:  # what only this face can tell, such as a point behind its eyes
             self._refuse_one(face, waiting, error)
-        else:
-            if isinstance(doing, Doing):
-                self._begun.append((face, waiting, doing))
+            return False
+        if isinstance(doing, Doing):
+            self._begun.append((face, waiting, doing))
+        return True
 
     def _follow(self) -> None:
         """Tell the senders of what takes its time what went wrong with it meanwhile, such as a missing voice."""
