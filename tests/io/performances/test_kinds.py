@@ -27,7 +27,8 @@ def put(folder, name, data):
 
 
 def test_there_is_a_good_file_of_each_kind():
-    assert {kind.name for kind in KINDS} == GOOD.keys()
+    # BML makes no performance before it is spoken: tests/io/test_bml.py reads it
+    assert {kind.name for kind in KINDS} - {"bml"} == GOOD.keys()
 
 
 def test_content_says_the_kind_whatever_the_name_is(kind, tmp_path):
