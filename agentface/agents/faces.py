@@ -23,7 +23,7 @@ class _Names(Table):
     faces: Annotated[dict[str, dict[_Emotion, _Share]], Field(min_length=1)]
 
 
-def load_faces(path: Path) -> dict[str, EmotionState]:
+def load_faces(path: str | Path) -> dict[str, EmotionState]:
     """What each name in a file shows; raises DataError with every fault."""
     faces = load(path, _Names).faces
     if faces.get(NEUTRAL) != {}:

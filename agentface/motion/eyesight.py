@@ -13,7 +13,10 @@ Point = tuple[float, float, float]
 _NEAREST = 1e-3  # m in front of the eyes' centres
 _FREE = 0.9
 """So much of its range an angle goes through as it is; beyond, it comes to its limit ever more slowly."""
-_LIMITS = tuple((parameter(name).low, parameter(name).high) for name in ("gaze_yaw", "gaze_pitch", "gaze_vergence"))
+_REACH = 0.98
+"""So much of its range an angle reaches: the rest is for what eyes do besides, lest that is cut off at a corner."""
+_EYES = (parameter(name) for name in ("gaze_yaw", "gaze_pitch", "gaze_vergence"))
+_LIMITS = tuple((_REACH * known.low, _REACH * known.high) for known in _EYES)
 
 
 class Eyesight(NamedTuple):

@@ -30,9 +30,9 @@ _CLOSING, _AJAR = 0.85, 0.03
 """Of the way to closed: an eye that is to be farther is to be closed, whatever its lids share of it; what is ajar."""
 _SERVES = 0.5
 """Of a parameter's largest effect: FAPs that it does less for do not move it by themselves."""
-_ENOUGH, _FELT, _ALIKE = 0.2, 0.02, 0.8
+_ENOUGH, _FELT = 0.2, 0.02
 """Of the best parameter's effect on a FAP that is asked for more than ``_FELT`` of its range: where those that serve it
-do less than ``_ENOUGH`` of it, the best may move, too, and all that do more than ``_ALIKE`` of it."""
+do less than ``_ENOUGH`` of it, the best may move, too, with its other side for a point of the middle."""
 _MIDDLE = 0.002
 """m from the median plane: what serves a point that near to it does so on both sides."""
 _TOLD = 0.05
@@ -90,8 +90,9 @@ class FapSolver:
         self._tikhonov = _ZERO * np.eye(free)
         effect = np.abs(self.fit.problem.jacobian[:count])
         self._serves = effect > _SERVES * np.maximum(effect.max(axis=0, initial=0.0), 1e-9)
-        middle = [abs(self.meter.points[known.points[0]].position[0]) < _MIDDLE for known in self.meter.faps]
-        self._serves[middle] |= self._serves[middle][:, _partners(self.fit.problem.free)]
+        self._partners = _partners(self.fit.problem.free)
+        self._middle = [abs(self.meter.points[known.points[0]].position[0]) < _MIDDLE for known in self.meter.faps]
+        self._serves[self._middle] |= self._serves[self._middle][:, self._partners]
         ends = [self.fit.problem.jacobian[:count] * end for end in (self.fit.problem.low, self.fit.problem.high)]
         self._does = np.maximum(*ends), -np.minimum(*ends)
         self._shut_rows = [np.isin(self.meter.columns, np.array(pair) - 1) for pair in LIDS]
@@ -169,7 +170,10 @@ class FapSolver:
         for row in np.flatnonzero(asked & (np.abs(goal[: len(asked)]) > _FELT)):
             does = self._does[int(goal[row] < 0.0)][row]
             if does.max(initial=0.0, where=self._serves[row]) < _ENOUGH * does.max():
-                moved |= does > _ALIKE * does.max()
+                best = int(does.argmax())
+                moved[best] = True
+                if self._middle[row]:
+                    moved[self._partners[best]] = True
         return moved
 
     def _closing(self, weight: Doubles, closing: Doubles) -> Doubles:

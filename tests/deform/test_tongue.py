@@ -102,7 +102,7 @@ def test_nothing_gets_into_the_tongue(face):
                 deep["upper teeth"][first + k] = deepest(upper, corners)
                 deep["lower teeth"][first + k] = deepest(posed(shown, lower), corners)
                 deep["skin"][first + k] = deepest(shown.vertices[skin].astype(float), corners)
-    assert out > POSES // 4, "a tongue that never leaves the mouth proves little"
+    assert out > POSES // 5, "a tongue that never leaves the mouth proves little"
     for name, at in deep.items():
         assert at.max() == 0.0, (name, np.argsort(-at)[:5], np.sort(at)[:-6:-1])
 

@@ -125,7 +125,7 @@ def test_a_mouth_that_is_told_alone_is_shown():
 @pytest.mark.parametrize("face", FACES)
 def test_a_tongue_that_is_told_to_come_out_of_an_open_mouth_comes_out(face):
     found = solver_of(face).solve(*only(open_jaw=700.0, thrust_tongue_tip=700.0))
-    assert found.shown[fap("thrust_tongue_tip").number - 1] == pytest.approx(700.0, rel=0.1)
+    assert found.shown[fap("thrust_tongue_tip").number - 1] == pytest.approx(700.0, rel=0.15)
     assert found.pose["tongue_out"] > 0.4
     assert not solver_of(face).solve(*only(thrust_tongue_tip=700.0)).pose["jaw_open"], "the jaw is not named"
 

@@ -26,7 +26,7 @@ class Child:
     The process ends with its standard input: with :meth:`close`, with this object, and when we are killed.
     """
 
-    def __init__(self, script: Path, name: str) -> None:
+    def __init__(self, script: str | Path, name: str) -> None:
         self._script, self._name = script, name
         self._process: subprocess.Popen[bytes] | None = None
         self._lock = threading.Lock()
