@@ -30,7 +30,7 @@ def run(program: str, **environment: str) -> subprocess.CompletedProcess[str]:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("variable", ["HOME", "XDG_CACHE_HOME"])
+@pytest.mark.parametrize("variable", ["HOME", pytest.param("XDG_CACHE_HOME", marks=pytest.mark.soak)])
 def test_a_face_works_where_nothing_can_be_kept_and_says_so_once(tmp_path, variable):
     place = tmp_path / "file"
     place.write_text("")

@@ -88,11 +88,11 @@ def test_no_emotion_turns_skin_over(face):
 @pytest.mark.slow
 @pytest.mark.parametrize("face", FACES)
 def test_few_muscles_in_full_turn_skin_over_round_the_mouth_alone(face):
-    """There press, funnel and roll meet zygomaticus and mentalis, which none of them knows; five in eight hundred."""
+    """There press, funnel and roll meet zygomaticus and mentalis, which none of them knows; one in a hundred."""
     found = turned_over(face, sparse(400, 82))
     marks = head_model(face).landmarks
     near = [marks[name] for name in ("mouth_corner_l", "subnasale", "lower_lip_middle", "alare_l")]
-    assert len(found) <= 3, found
+    assert len(found) <= 4, found
     for places in found.values():
         away = np.abs(places)[:, None] - np.abs(near)
         assert (np.linalg.norm(away, axis=2).min(axis=1) < 0.02).all(), found
