@@ -28,7 +28,7 @@ def load_faces(path: str | Path) -> dict[str, EmotionState]:
     faces = load(path, _Names).faces
     if faces.get(NEUTRAL) != {}:
         got = "none" if NEUTRAL not in faces else str(dict(faces[NEUTRAL]))
-        raise DataError([Fault(path, None, f"faces.{NEUTRAL}", "an empty mixture", got)])
+        raise DataError([Fault(Path(path), None, f"faces.{NEUTRAL}", "an empty mixture", got)])
     return {
         name: EmotionState.of({str(emotion): share for emotion, share in shares.items()})
         for name, shares in faces.items()

@@ -61,8 +61,8 @@ def test_an_unknown_benchmark_is_told():
     with pytest.raises(UnknownNameError, match="papers"):
         run("paper")
     assert set(BENCHES) == {
-        "deform", "papers", "frame", "motion", "latency", "crowd", "fuzzy", "render", "start", "texture", "tissue", "mpeg4",
-        "arkit",
+        "deform", "papers", "frame", "motion", "latency", "crowd", "fuzzy", "render", "start", "texture", "tissue",
+        "mpeg4", "arkit",
     }  # fmt: skip
 
 
