@@ -11,7 +11,6 @@ from agentface.commands.ending import Ending, until_told
 from agentface.commands.options import face_options, json_option, make_face, write_json
 from agentface.commands.progress import progress
 from agentface.commands.recordings import Opened, file_fps_option, measured, opened
-from agentface.errors import OutputError
 
 if TYPE_CHECKING:
     from agentface.io.performances.kinds import FileKind, Recording
@@ -24,7 +23,9 @@ _TO = ("fap", "openface", "live-link", "poses-json", "poses-npz", "emotionml")
 @click.argument("output", type=click.Path(path_type=Path), metavar="OUT")
 @click.option("--to", type=click.Choice(_TO), help="The kind of OUT; if not given, what its name ends in says it.")
 @click.option(
-    "--fps", type=click.FloatRange(0.001, 1000), help="Frames a second of FAPs; those of IN, or 30, if not given."
+    "--fps",
+    type=click.FloatRange(0.001, 1000),
+    help="Frames a second of FAPs (those of IN, or 30, if not given) and of emotions (25).",
 )
 @file_fps_option
 @json_option
@@ -40,7 +41,7 @@ def convert(
     face: str,
     deformer: str,
 ) -> None:
-    """Write a performance as another kind of file: FAPs, action units, ARKit's weights, or poses.
+    """Write a performance as another kind of file: FAPs, action units, ARKit's weights, emotions, or poses.
 
     \b
     agentface convert openface.csv smile.fap
@@ -68,19 +69,20 @@ def _in_terms_of(
     kind: FileKind, found: Opened, output: Path, face: str, deformer: str, fps: float | None, ending: Ending
 ) -> Recording:
     """What is written: the recording itself where it has these terms already."""
+    from agentface.emotion.inference import default_inference
     from agentface.io.performances.performing import Performer
     from agentface.io.performances.writing import action_units_of, terms_of
+    from agentface.motion.scored import score_of_performance
 
     terms = terms_of(kind)
     if isinstance(found.recording, terms) and fps is None:
         return found.recording
-    if kind.name == "emotionml":
-        got = f"what is of the kind {found.kind.name}"
-        raise OutputError(f"expected emotions, as EmotionML holds emotions and no poses, got {got}")
     made = make_face(face, deformer, running=True)
     if kind.name == "fap":
         return measured(found, made, fps, ending.told)
     performance = found.performance(made)
+    if kind.name == "emotionml":
+        return score_of_performance(performance, default_inference(), fps or 25.0)
     if kind.name == "openface":
         return action_units_of(performance)
     if kind.name == "live-link":

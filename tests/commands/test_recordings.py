@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import signal
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -183,7 +184,6 @@ def test_visemes_and_expressions_of_faps_are_shown(tmp_path):
 def test_emotions_stay_emotions(tmp_path):
     done("convert", put(tmp_path, "emotionml"), tmp_path / "again.xml")
     assert load(tmp_path / "again.xml")[1].cues == load(tmp_path / "emotionml.xml")[1].cues
-    assert "EmotionML holds emotions" in failed("convert", put(tmp_path, "poses-json"), tmp_path / "a.xml")
 
 
 def test_strict_makes_notes_faults(tmp_path):
@@ -243,3 +243,11 @@ def test_weights_of_a_phone_play_and_are_written(tmp_path):
     np.testing.assert_allclose(again.times_s, one.times_s, atol=1e-4)
     assert 0.0 <= again.weights.min() <= again.weights.max() <= 1.0
     assert again.angles.any()
+
+
+def test_faps_of_an_emotion_become_that_emotion(tmp_path):
+    done("convert", Path("examples/surprise_then_joy.fap").resolve(), tmp_path / "felt.xml", "--fps", 10)
+    cues = {cue.emotion: np.array(cue.samples) for cue in load(tmp_path / "felt.xml")[1].cues}
+    assert cues["surprise"][:12].max() == pytest.approx(1.0, abs=0.05)
+    assert cues["happiness"][20:28] == pytest.approx(50 / 63, abs=0.03)
+    assert max([0.0, *(samples.max() for name, samples in cues.items() if name not in ("surprise", "happiness"))]) < 0.1
