@@ -79,6 +79,6 @@ def talking_face(voice=None, model=None, **options):
     """A face with such a voice, whose skin stays as it is."""
     face, voice = Face(model or head_model(), compiled=False, **options), voice or FakeVoice()
     face.take_deformer(Still(face.deformer, face.pose))
-    face._talker = Talker(face, Speaker(lambda *_: voice))
-    face.noted.append(face._talker.notice)
+    face._agendas.talker = Talker(face, Speaker(lambda *_: voice))
+    face.noted.append(face._agendas.talker.notice)
     return face

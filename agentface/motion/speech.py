@@ -54,7 +54,7 @@ class SpeechChannel:
         self.articulation: Articulation = default_articulation()
         self.ended: list[Callable[[], None]] = []
         """Called once for every utterance: when it has been said, and when it is interrupted or is never begun."""
-        self._yielding = Yielding(self.articulation, yields or default_conflicts().yields)
+        self._yielding = Yielding(self.articulation, yields or default_conflicts().yields, compiled=compiled)
         self.names = self._yielding.names
         self._compiled = compiled and can_compile()
         self._now = 0.0
@@ -65,10 +65,10 @@ class SpeechChannel:
         self._following: Following | None = None
         self._ended_at = 0.0
         size = self.articulation.size
-        self._rest = Envelope(size, -_FURTHEST, _FURTHEST)
+        self._rest = Envelope(size, -_FURTHEST, _FURTHEST, compiled=compiled)
         self._sample, self._ahead = np.zeros(size), np.zeros(size)
         self._scratch = np.zeros(len(self.articulation.articulators))
-        self._visemes = Envelope(len(self.articulation.visemes))
+        self._visemes = Envelope(len(self.articulation.visemes), compiled=compiled)
         self._until = np.full(len(self.articulation.visemes), math.inf)
 
     def follow(self, follower: Follower) -> None:

@@ -526,7 +526,7 @@ def test_the_status_is_limited_over_all_senders(desk):
 
 def test_a_voice_that_fails_later_is_answered_to_who_had_it_speak(desk):
     voice = FakeVoice()
-    desk.face._talker = Talker(desk.face, Speaker(lambda *_: voice))
+    desk.face._agendas.talker = Talker(desk.face, Speaker(lambda *_: voice))
     desk.take(message("/agentface/say", "s", "Bad."), sender=("127.0.0.1", 2))
     desk.take(message("/agentface/say", "s", "Good."))
     assert desk.said() == []
