@@ -59,16 +59,16 @@ def test_it_answers_and_ends_when_told(kind):
         stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=os.environ | {"PYTHONUNBUFFERED": "1"},
     )  # fmt: skip
     try:
-        watchdog = threading.Timer(120, server.kill)
+        watchdog = threading.Timer(280, server.kill)
         watchdog.start()
         place = re.search(r"amber listens to OSC on 127.0.0.1:(\d+)", server.stdout.readline())
         with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as client:
             client.connect(("127.0.0.1", int(place[1])))
-            client.settimeout(30)
+            client.settimeout(200)
             client.send(OscMessageBuilder("/agentface/status").build().dgram)
             assert json.loads(OscMessage(client.recv(65536)).params[0])["face"] == "amber"
         server.send_signal(kind)
-        _, errors = server.communicate(timeout=30)
+        _, errors = server.communicate(timeout=200)
         assert server.returncode == 0
         assert errors == ""
     finally:

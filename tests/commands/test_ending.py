@@ -32,7 +32,7 @@ def recording(path: Path, *options: str, **streams) -> subprocess.Popen[str]:
     """A server that has begun to film."""
     streams = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True} | streams
     server = subprocess.Popen([*SERVE, "--record", str(path), *options], **streams)
-    threading.Timer(120, server.kill).start()
+    threading.Timer(280, server.kill).start()
     if server.stdout is not None:
         assert "listens to OSC" in server.stdout.readline()
     return server
@@ -68,7 +68,7 @@ def test_signals_while_it_films(tmp_path, told):
         film(path, 0.7)
         for kind in told:
             server.send_signal(kind)
-        _, said = server.communicate(timeout=60)
+        _, said = server.communicate(timeout=240)
     assert server.returncode == 0, said
     assert "Traceback" not in said
     seen = times(path)
@@ -86,7 +86,7 @@ def test_a_second_signal_ends_the_drawing_of_what_was_noted(tmp_path):
             assert server.poll() is None, server.stderr.read()
         server.send_signal(told)
         server.send_signal(told)
-        _, said = server.communicate(timeout=60)
+        _, said = server.communicate(timeout=240)
     assert server.returncode == 128 + told
     stopped, whole = map(float, re.search(rf"{path}: stopped at (\d\.\d) s of (\d\.\d) s", said).groups())
     seen = times(path)
@@ -107,7 +107,7 @@ def test_a_terminal_that_is_closed(tmp_path, options):
             said += os.read(terminal, 1000)
         time.sleep(0.8)
         os.close(terminal)  # which sends SIGHUP; what is said from now on fails
-        assert server.wait(60) == 0
+        assert server.wait(240) == 0
     assert times(path)[-1] > 0.3
 
 
@@ -124,7 +124,7 @@ def test_a_reader_that_goes_away_ends_nothing(tmp_path):
     with recording(path, "--duration", "0.6") as server:
         server.stdout.close()
         server.stderr.close()
-        assert server.wait(60) == 0
+        assert server.wait(240) == 0
     assert times(path)[-1] > 0.3
 
 
@@ -133,7 +133,7 @@ def test_a_disk_that_fills_keeps_the_recording_until_then(tmp_path):
     limited = 'ulimit -f 40; exec "$0" "$@"'  # KiB
     command = ["bash", "-c", limited, *SERVE, "--size", "640x480", "--liveliness", "0", "--record", str(path)]
     command += ["--duration", "60"]  # a still face fills it slowly
-    done = subprocess.run(command, check=False, capture_output=True, text=True, timeout=120)
+    done = subprocess.run(command, check=False, capture_output=True, text=True, timeout=240)
     assert done.returncode == 1
     # the same limit keeps others, such as a cache or a measurement, from what they would write
     (said,) = [line for line in done.stderr.splitlines() if line.startswith("agentface: ")]
