@@ -31,7 +31,7 @@ class FakeVoice:
         self.go.set()
 
     def speak(self, sentence, rate=1.0, marks=()):
-        assert self.go.wait(20)
+        assert self.go.wait(200)
         if sentence.startswith("Bad"):
             raise SpeechError("no")
         if sentence.startswith("Worse"):
