@@ -1,7 +1,7 @@
 """What several channels want of the same parameters, blended into one pose.
 
-A wish is what one channel wants of one parameter: it goes over what those before it have made, as ``(1 - w) v + w f(v)``
-for a weight w, where f replaces v, adds to it, scales it or is the larger of both.
+A wish is what one channel wants of one parameter. It goes over what those before it made: ``(1 - w) v + w f(v)`` for a
+weight w, where f replaces v, adds to it, scales it or is the larger of both.
 """
 
 from __future__ import annotations
