@@ -1,6 +1,6 @@
-"""What several channels want of the same parameters, blended into one pose, row by row.
+"""What several channels want of the same parameters, blended into one pose.
 
-A row is one parameter of one channel: it goes over what the rows before it have made, as ``(1 - w) v + w f(v)`` for a
+A wish is what one channel wants of one parameter. It goes over what those before it made: ``(1 - w) v + w f(v)`` for a
 weight w, where f replaces v, adds to it, scales it or is the larger of both.
 """
 
@@ -19,8 +19,8 @@ from agentface.parameters import WAYS, Way, parameter
 MAX, ADD, SCALE = (WAYS.index(way) for way in ("max", "add", "scale"))
 
 
-class Row(NamedTuple):
-    """One parameter of one channel, to be sorted by what comes first."""
+class Wish(NamedTuple):
+    """One, to be sorted by what comes first."""
 
     priority: int
     channel: int
@@ -31,42 +31,42 @@ class Row(NamedTuple):
     name: str
 
 
-class Rows(NamedTuple):
-    """Rows in the order in which they are blended, ``(R,)`` each; ``way`` is the place in ``WAYS``."""
+class Wishes(NamedTuple):
+    """Wishes in the order in which they are blended, ``(R,)`` each; ``way`` is the place in ``WAYS``."""
 
     channel: Indices
     way: Indices
     column: Indices
     place: Indices
     bounds: Indices
-    """``(G + 1,)``: from each of them to the next, all rows are of one channel and one way."""
+    """``(G + 1,)``: from each of them to the next, all are of one channel and one way."""
 
     @classmethod
-    def of(cls, rows: Iterable[Row]) -> Rows:
+    def of(cls, wishes: Iterable[Wish]) -> Wishes:
         """Those of the lowest priority first, of equal priority those of the first channel."""
-        ordered = sorted(rows)
-        kinds = [(row.priority, row.channel, row.way) for row in ordered]
+        ordered = sorted(wishes)
+        kinds = [(wish.priority, wish.channel, wish.way) for wish in ordered]
         bounds = [0, *(number for number in range(1, len(kinds)) if kinds[number] != kinds[number - 1]), len(kinds)]
         columns = (
-            [row.channel for row in ordered],
-            [WAYS.index(row.way) for row in ordered],
-            [row.column for row in ordered],
-            [parameter(row.name).index for row in ordered],
+            [wish.channel for wish in ordered],
+            [WAYS.index(wish.way) for wish in ordered],
+            [wish.column for wish in ordered],
+            [parameter(wish.name).index for wish in ordered],
             bounds,
         )
         return cls(*(np.array(column, np.int32) for column in columns))
 
 
-def blend_in_numpy(rows: Rows, wants: npt.NDArray[np.bool_], wanted: Doubles, values: Doubles) -> None:
+def blend_in_numpy(wishes: Wishes, wants: npt.NDArray[np.bool_], wanted: Doubles, values: Doubles) -> None:
     """Blend into ``values (COUNT,)`` what those channels want for which ``wants (C,)`` is true.
 
     ``wanted (2, N)`` are the values and the weights of all channels.
     """
-    for first, end in pairwise(rows.bounds.tolist()):
-        if end == first or not wants[rows.channel[first]]:
+    for first, end in pairwise(wishes.bounds.tolist()):
+        if end == first or not wants[wishes.channel[first]]:
             continue
-        places, way = rows.place[first:end], rows.way[first]
-        below, (asked, weights) = values[places], wanted[:, rows.column[first:end]]
+        places, way = wishes.place[first:end], wishes.way[first]
+        below, (asked, weights) = values[places], wanted[:, wishes.column[first:end]]
         if way == MAX:
             asked = np.maximum(below, asked)
         elif way == ADD:

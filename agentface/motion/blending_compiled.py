@@ -7,16 +7,16 @@ import numpy.typing as npt
 
 from agentface.conventions import Doubles
 from agentface.kernel import kernel
-from agentface.motion.blending import ADD, MAX, SCALE, Rows
+from agentface.motion.blending import ADD, MAX, SCALE, Wishes
 
 
 @kernel()
-def blend(rows: Rows, wants: npt.NDArray[np.bool_], wanted: Doubles, values: Doubles) -> None:
+def blend(wishes: Wishes, wants: npt.NDArray[np.bool_], wanted: Doubles, values: Doubles) -> None:
     """As ``blend_in_numpy`` of ``blending``, with the same arguments."""
-    for row in range(len(rows.place)):
-        if not wants[rows.channel[row]]:
+    for row in range(len(wishes.place)):
+        if not wants[wishes.channel[row]]:
             continue
-        place, way, column = rows.place[row], rows.way[row], rows.column[row]
+        place, way, column = wishes.place[row], wishes.way[row], wishes.column[row]
         below, asked, weight = values[place], wanted[0, column], wanted[1, column]
         if way == MAX:
             asked = np.maximum(below, asked)  # which keeps what is no number

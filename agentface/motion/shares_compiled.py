@@ -1,4 +1,4 @@
-"""``yielding`` compiled."""
+"""``shares`` compiled."""
 
 from __future__ import annotations
 
@@ -6,17 +6,17 @@ import math
 
 from agentface.conventions import Doubles, Indices
 from agentface.kernel import kernel
-from agentface.motion.yielding import POWER, Shares
+from agentface.motion.shares import POWER, Shares
 
 
 @kernel()
 def share(sample: Doubles, shares: Shares, values: Doubles, weights: Doubles) -> None:
-    """As ``share_in_numpy`` of ``yielding``, with the same arguments."""
-    tight, speaking = sample[-2], sample[-1]
+    """As ``share_in_numpy`` of ``shares``, with the same arguments."""
+    tight, speaking = sample[-2], min(max(sample[-1], 0.0), 1.0)
     rounding, closure = _together(sample, shares.rounds), _together(sample, shares.closes)
     widest = 1.0 / math.expm1(tight) if tight > 0.0 else math.inf
     for place in range(len(values)):
-        offset = sample[shares.said[place]] * shares.moved[place]
+        offset = min(max(sample[shares.said[place]], -1.0), 1.0) * shares.moved[place]
         if place == shares.jaw:
             offset = _smaller(offset, widest)
         keep = 1.0 - abs(offset)
@@ -33,7 +33,7 @@ def share(sample: Doubles, shares: Shares, values: Doubles, weights: Doubles) ->
 def _together(sample: Doubles, places: Indices) -> float:
     left = 1.0
     for place in places:
-        left *= 1.0 - max(sample[place], 0.0)
+        left *= 1.0 - min(max(sample[place], 0.0), 1.0)
     return 1.0 - left
 
 

@@ -1,10 +1,10 @@
-"""``envelope`` compiled."""
+"""``minimum_jerk`` compiled."""
 
 from __future__ import annotations
 
 from agentface.conventions import Doubles
 from agentface.kernel import kernel
-from agentface.motion.envelope import ALMOST
+from agentface.motion.minimum_jerk import ALMOST
 
 
 @kernel()
@@ -20,7 +20,7 @@ def follow(
     value: Doubles,
     velocity: Doubles,
 ) -> bool:
-    """As ``follow_in_numpy`` of ``envelope``, with the same arguments."""
+    """As ``follow_in_numpy`` of ``minimum_jerk``, with the same arguments."""
     settled = True
     for place in range(len(value)):
         u, w = min(elapsed[place] / travel[place], 1.0), min(elapsed[place] / brake[place], 1.0)
