@@ -20,6 +20,9 @@ from agentface.errors import DataError, Fault, InvalidValueError
 from agentface.mesh.gltf_buffer import CHUNK, COMPONENTS, HEADER, WIDTHS, Array, GltfBuffer
 
 _LARGEST = 64 * 1024 * 1024
+_LARGEST_TEXT = 4 * 1024 * 1024
+_MOST_READ = 4 * _LARGEST
+"""Bytes that a file's accessors may come to: several can be of the same bytes."""
 _LARGEST_STRIDE = 252
 
 
@@ -57,7 +60,7 @@ def read_glb(path: str | Path) -> dict[str, MeshArrays]:
         return {mesh["name"]: reader.mesh(mesh) for mesh in reader.document["meshes"]}
     except OSError as error:
         raise DataError([Fault(path, None, "", "a readable file", error.strerror or "an error")]) from None
-    except (ValueError, KeyError, IndexError, TypeError, RecursionError, struct.error) as error:
+    except (ArithmeticError, AttributeError, LookupError, RecursionError, TypeError, ValueError, struct.error) as error:
         got = f"{type(error).__name__}: {error}"
         raise DataError([Fault(path, None, "", "a GLB file as agentface writes it", got)]) from error
 
@@ -69,31 +72,45 @@ class _GlbReader:
         magic, version, _, length, kind = struct.unpack_from("<4sIII4s", content)
         if (magic, version, kind) != (b"glTF", 2, b"JSON"):
             raise ValueError("not a binary glTF 2.0 file")
+        if length > _LARGEST_TEXT:
+            raise ValueError(f"a JSON part of {length} bytes, more than {_LARGEST_TEXT}")
         self.document: dict[str, Any] = json.loads(content[HEADER : HEADER + length])
         self.blob = content[HEADER + length + CHUNK :]
+        self._read = 0
 
     def rows(self, index: int, offset: int, kind: np.dtype[Any], shape: tuple[int, int]) -> Array:
         """``shape`` components of a view whose rows may be interleaved with others, or padded to four bytes."""
-        view, size = self.document["bufferViews"][index], shape[1] * kind.itemsize
+        view, size = self._view(index), shape[1] * kind.itemsize
         stride, start = view.get("byteStride", size), view.get("byteOffset", 0) + offset
         if stride == size:
             return self.view(index, offset, kind, shape[0] * shape[1]).reshape(shape)
         if not size < stride <= _LARGEST_STRIDE or not 0 <= start <= len(self.blob) - stride * (shape[0] - 1) - size:
             raise ValueError(f"{shape[0]} rows of {stride} bytes in a view of fewer")
+        self._count(shape[0] * size)
         return np.ndarray(shape, kind, self.blob, start, (stride, kind.itemsize)).copy()
 
     def view(self, index: int, offset: int, kind: np.dtype[Any], count: int) -> Array:
-        start = self.document["bufferViews"][index].get("byteOffset", 0)
-        return np.frombuffer(self.blob, kind, count, start + offset)
+        if count < 0 or offset < 0:  # which mean something else to numpy
+            raise ValueError(f"{count} components from byte {offset} on")
+        self._count(count * kind.itemsize)
+        return np.frombuffer(self.blob, kind, count, self._view(index).get("byteOffset", 0) + offset)
+
+    def _count(self, size: int) -> None:
+        self._read += size
+        if self._read > _MOST_READ:
+            raise ValueError(f"accessors of more than {_MOST_READ} bytes")
+
+    def _view(self, index: int) -> dict[str, Any]:
+        return _piece(self.document["bufferViews"], index)
 
     def accessor(self, index: int) -> Array:
-        row = self.document["accessors"][index]
+        row = _piece(self.document["accessors"], index)
         width, kind = WIDTHS[row["type"]], np.dtype(COMPONENTS[row["componentType"]])
         found = self.rows(row["bufferView"], row.get("byteOffset", 0), kind, (row["count"], width))
         return found if width > 1 else found[:, 0]
 
     def shape(self, index: int) -> Shape:
-        row = self.document["accessors"][index]
+        row = _piece(self.document["accessors"], index)
         if "sparse" not in row:
             return Shape(np.zeros(0, np.int32), np.zeros((0, 3), np.float32))
         sparse = row["sparse"]
@@ -115,6 +132,12 @@ class _GlbReader:
             dict(zip(extras.get("targetNames", []), targets, strict=True)),
             extras,
         )
+
+
+def _piece(pieces: list[dict[str, Any]], index: int) -> dict[str, Any]:
+    if not 0 <= index < len(pieces):  # -1 means another one to Python
+        raise IndexError(f"number {index} of {len(pieces)}")
+    return pieces[index]
 
 
 def texture_coordinates(mesh: MeshArrays) -> Floats | None:

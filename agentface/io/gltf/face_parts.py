@@ -8,7 +8,7 @@ from typing import Literal, TypeAlias
 
 import numpy as np
 
-from agentface.conventions import SIDES, Floats, Indices
+from agentface.conventions import SIDES, Doubles, Floats, Indices
 from agentface.deform.finish import neck
 from agentface.deform.geometry import FaceGeometry
 from agentface.head.look import HairLook, Look
@@ -130,7 +130,7 @@ def _mouth(model: HeadModel, look: Look) -> list[FacePart]:
 def _mouth_colours(model: HeadModel, look: Look, name: str) -> Floats:
     """Teeth that are darker towards the gum and beside each other, gums, tongue; as shaders/part.frag.glsl has them."""
     mesh = model.parts[name]
-    matter = mesh.attributes["_MATERIAL"].astype(np.float64) / 255
+    matter = mesh.attributes["_MATERIAL"].astype(np.float32) / np.float32(255)
     aside, up = crown_places(mesh.attributes["POSITION"], mesh.triangles, matter[:, 0]).T.astype(np.float64)
     tooth = np.array(look.teeth) * np.where(up[:, None] > 0.7, _AT_GUM, 1.0)
     tooth = tooth * np.where(np.abs(aside)[:, None] > 0.9, _BETWEEN_TEETH, 1.0)
@@ -154,7 +154,7 @@ def _eyes(model: HeadModel) -> list[FacePart]:
         flat = np.where((flat[:, 2:] < 0.0) & (reach > 0.0), flat[:, :2] / np.maximum(reach, 1e-6), flat[:, :2])
         uv = (0.5 + 0.5 * EYE_INSET * flat).astype(np.float32)
         rides: Rides = "eye_l" if side == SIDES[0] else "eye_r"
-        parts.append(FacePart(rides, "eye", rides, mesh.triangles, lambda _, still=still: still, uv=uv))
+        parts.append(FacePart(rides, "eye", rides, mesh.triangles, _still(still), uv=uv))
     return parts
 
 
@@ -193,7 +193,7 @@ def _head_hair(model: HeadModel, look: HairLook) -> list[FacePart]:
     parts = [
         FacePart(
             "scalp", "scalp", "skin", cap.triangles, _riding(model, cap), uv=cap_places(cap.vertices, centre),
-            stays=stays[cap.anchors].mean(axis=1),
+            stays=np.asarray(stays[cap.anchors].mean(axis=1), np.float32),
         )
     ]  # fmt: skip
     strands = strand_mesh(grown_strands(model, look, _STRANDS), model.vertices, centre)
@@ -210,13 +210,11 @@ def _head_hair(model: HeadModel, look: HairLook) -> list[FacePart]:
         still = rows[:, :3].copy(), rows[:, 6:9].copy()
         uv = rows[:, 9:11] / np.array([LOCKS, 1.0], np.float32)
         light = np.repeat(np.clip(rows[:, 11:12], 0.0, 1.0), 3, axis=1)
-        parts.append(
-            FacePart(f"hair_sheet_{number}", "hair_sheet", "head", triangles, lambda _, still=still: still, uv, light)
-        )
+        parts.append(FacePart(f"hair_sheet_{number}", "hair_sheet", "head", triangles, _still(still), uv, light))
     return parts
 
 
-def cap_places(vertices: Floats, centre: np.typing.ArrayLike) -> Floats:
+def cap_places(vertices: Floats, centre: Doubles) -> Floats:
     """``(N, 2)`` texture coordinates of the scalp: the directions from the head's centre, about the crown."""
     away = vertices.astype(np.float64) - centre
     axis = _CAP_AXIS / np.linalg.norm(_CAP_AXIS)
@@ -243,6 +241,10 @@ def _riding(model: HeadModel, mesh: Anchored, *, turning: bool = False) -> Calla
         return _with_normals(places, mesh.triangles) if turning else (places, mesh.normals.astype(np.float32))
 
     return at
+
+
+def _still(there: PlacesAndNormals) -> Callable[[FaceGeometry], PlacesAndNormals]:
+    return lambda _: there
 
 
 def _moved(turn: Floats, places: Floats) -> Floats:

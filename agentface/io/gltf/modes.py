@@ -22,7 +22,7 @@ class Modes:
     Attributes:
         ways: ``(K, 3 N)`` m, each scaled so that its weights reach 1 or -1.
         weights: ``(T, K)``.
-        error_max_mm, error_rms_mm: how far vertices are off in the frames: the farthest, and the root of the mean square.
+        error_max_mm, error_rms_mm: how far vertices are off: the farthest, and the root of the mean square.
     """
 
     ways: Doubles

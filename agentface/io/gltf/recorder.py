@@ -22,19 +22,19 @@ class RowTaker(Protocol):
 
 
 class SurfaceRecorder:
-    """Gives each frame's movement to ``taker``, and keeps the turns of the head and the eyes; ``told`` gets its time.
+    """Gives each frame's movement to ``taker``, and keeps the turns of the head and the eyes.
 
     Attributes:
+        told: gets the time of each frame in seconds.
         times_s: ``(T,)`` seconds.
         heads: ``(T, 3, 3)`` the head's turns.
         eyes: ``(T, 2, 3, 3)`` the eyes'.
         thrusts: ``(T, 2)`` m, how far the eyes come forward.
     """
 
-    def __init__(
-        self, model: HeadModel, surface: Surface, taker: RowTaker, told: Callable[[float], object] = lambda _: None
-    ) -> None:
-        self._model, self._surface, self._taker, self._told = model, surface, taker, told
+    def __init__(self, model: HeadModel, surface: Surface, taker: RowTaker) -> None:
+        self._model, self._surface, self._taker = model, surface, taker
+        self.told: Callable[[float], object] = lambda _: None
         self._times: list[float] = []
         self._turns: list[tuple[Floats, Floats, Floats]] = []
 
@@ -44,7 +44,7 @@ class SurfaceRecorder:
         self._taker.add(self._surface.row(released(self._model, geometry)))
         self._times.append(frame.time_s)
         self._turns.append((geometry.head[:3, :3].copy(), geometry.eye_rotations.copy(), geometry.eye_thrust.copy()))
-        self._told(frame.time_s)
+        self.told(frame.time_s)
 
     def __len__(self) -> int:
         return len(self._times)

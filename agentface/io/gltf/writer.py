@@ -24,7 +24,7 @@ _WEIGHT_STEPS = 65535
 
 
 class Target(NamedTuple):
-    """A morph target: how far it moves places in m, and changes normals; each ``(N, 3)``, normals where there are any."""
+    """A morph target: how far it moves places in m, and changes normals; ``(N, 3)`` each, or no normals."""
 
     places: Floats
     normals: Floats | None = None
