@@ -1,15 +1,19 @@
-""":class:`Drawing`: how the pictures of a speaker look."""
+""":class:`Drawing`: how pictures of a face look, and :class:`Painter`, who draws them."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from agentface.conventions import Bytes
+from agentface.deform.geometry import FaceGeometry
 from agentface.errors import InvalidValueError, UnknownNameError
-from agentface.face import Face
+from agentface.head.model import HeadModel
+
+if TYPE_CHECKING:
+    from agentface.view.renderer import Renderer
 
 LOOK, TRANSPARENT = "look", "transparent"
 BACKGROUNDS = (LOOK, TRANSPARENT)
@@ -48,10 +52,34 @@ class Drawing:
         """3 for red, green and blue, 4 with alpha."""
         return 4 if self.background == TRANSPARENT else 3
 
-    def draw(self, face: Face) -> Bytes:
-        """A picture of the face as shown now, ``(height, width, channels)``; raises GraphicsError."""
-        image = face.render(self.size, self.camera, self.quality, alpha=self.background != LOOK)
-        return image if isinstance(self.background, str) else _over(image, self.background)
+class Painter:
+    """Draws one face in the thread that makes its first picture.
+
+    Args:
+        model: the face.
+        look: the name of a look of this face, or the path of its file; the face's own when None.
+    """
+
+    def __init__(self, model: HeadModel, look: str | None = None) -> None:
+        self._model, self._look = model, look
+        self._renderer: Renderer | None = None
+
+    def draw(self, geometry: FaceGeometry, drawing: Drawing) -> Bytes:
+        """A picture, ``(height, width, channels)``; raises GraphicsError, UnknownNameError."""
+        if self._renderer is None:
+            from agentface.head.look import load_look
+            from agentface.view.renderer import Renderer
+
+            self._renderer = Renderer(self._model, load_look(self._model, self._look))
+        alpha = drawing.background != LOOK
+        image = self._renderer.render(geometry, drawing.size, drawing.camera, drawing.quality, alpha=alpha)
+        return image if isinstance(drawing.background, str) else _over(image, drawing.background)
+
+    def close(self) -> None:
+        """Give back what was taken from the graphics driver; may be called twice."""
+        renderer, self._renderer = self._renderer, None
+        if renderer is not None:
+            renderer.close()
 
 
 def _over(image: Bytes, colour: tuple[int, int, int]) -> Bytes:

@@ -8,7 +8,7 @@ from typing import Self
 
 import numpy as np
 
-from agentface.agents.drawing import Drawing
+from agentface.agents.drawing import Drawing, Painter
 from agentface.agents.mouth import Mouth
 from agentface.agents.pace import Pace
 from agentface.agents.pieces import Piece, SegmentEnd, SoundPiece, VideoFrame
@@ -51,6 +51,7 @@ class Speaker:
     Args:
         face: what speaks; it stays the caller's to close.
         drawing: how its pictures look; None for geometry instead.
+        look: of its pictures, the name of one of the face's looks or a path; the face's own when None.
         fps: frames a second, more than 0 and at most 1000.
         rate_hz: samples a second of what is heard, a whole number in 4000..192000.
         delay_s: 0.05..2.
@@ -66,6 +67,7 @@ class Speaker:
         face: Face,
         drawing: Drawing | None = _USUAL,
         *,
+        look: str | None = None,
         fps: float = 25.0,
         rate_hz: int = 24_000,
         delay_s: float = DELAY_S,
@@ -80,7 +82,7 @@ class Speaker:
         self.rate_hz = self._line.rate_hz
         self._clock, self._pronounce = clock or SystemClock(), pronounce
         self._queue = SegmentQueue(self.rate_hz)
-        self._mouth = Mouth(face)
+        self._mouth, self._painter = Mouth(face), Painter(face.model, look)
         self._hearing: SegmentHearing | None = None
         self._followed: SoundSegment | None = None
         self._pace, self._slot = Pace(self._clock, self.fps), -1
@@ -154,6 +156,7 @@ class Speaker:
         if not self._closed:
             self._closed = True
             self._thread.shutdown()
+            self._painter.close()
             talker = self.face.talker
             talker.latency_s = 0.0
             talker.heard.remove(self._hear)
@@ -189,7 +192,7 @@ class Speaker:
         """Load what the first frames need before their time begins."""
         self.face.warm_up()
         if self.drawing is not None:
-            self.drawing.draw(self.face)
+            self._painter.draw(self.face.geometry, self.drawing)
 
     def _sample(self, slot: int) -> int:
         return round(slot * self.rate_hz / self.fps)
@@ -223,7 +226,7 @@ class Speaker:
         geometry = self.face.step(time_s - before_s)
         if self.drawing is None:
             return VideoFrame(time_s, None, self.face.pose, geometry.copy())
-        return VideoFrame(time_s, self.drawing.draw(self.face), self.face.pose)
+        return VideoFrame(time_s, self._painter.draw(geometry, self.drawing), self.face.pose)
 
     def _hear(self, sound: Sound, in_s: float) -> None:
         """What the face's talker says."""
