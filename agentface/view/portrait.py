@@ -37,9 +37,10 @@ from agentface.view.skin.wrinkle_atlas import atlas_height, atlas_patches
 from agentface.view.skin.wrinkle_patches import SIDE
 
 _QUALITY = "portrait"
-_LONGEST = 2.0**-8
+_LONGEST = 2.0**-7
 """Metres of the edges that are cut and curved: what a portrait of some 1400 pixels of height takes."""
-_NO_FRAGMENT = "#version 300 es\nvoid main() {}\n"
+_WHITE = "#version 300 es\nprecision highp float;\nout vec4 colour;\nvoid main() { colour = vec4(1.0); }\n"
+"""WebGL refuses a shader that leaves a framebuffer's colour alone."""
 _UNSEEN = "copy"
 """What of the programs only this package's own framebuffers need."""
 
@@ -100,7 +101,7 @@ def programs(*, textured: bool) -> dict[str, dict[str, str]]:
         }
         for name, (vertex, fragment, defines) in shaders.items()
     }
-    return made | {"depth": {"vertex": embedded(read_source("depth.vert.glsl")), "fragment": _NO_FRAGMENT}}
+    return made | {"depth": {"vertex": embedded(read_source("depth.vert.glsl")), "fragment": _WHITE}}
 
 
 def _mesh(mesh: DrawnMesh) -> dict[str, Any]:
