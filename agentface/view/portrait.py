@@ -37,7 +37,7 @@ from agentface.view.skin.wrinkle_atlas import atlas_height, atlas_patches
 from agentface.view.skin.wrinkle_patches import SIDE
 
 _QUALITY = "portrait"
-_LONGEST = 2.0**-7
+_LONGEST = 2.0**-8
 """Metres of the edges that are cut and curved: what a portrait of some 1400 pixels of height takes."""
 _WHITE = "#version 300 es\nprecision highp float;\nout vec4 colour;\nvoid main() { colour = vec4(1.0); }\n"
 """WebGL refuses a shader that leaves a framebuffer's colour alone."""

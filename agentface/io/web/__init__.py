@@ -1,1 +1,1 @@
-"""The face in a web page: the server, what it sends, and the page."""
+"""A face in a web page: what travels, who may ask, and the server."""
