@@ -20,6 +20,7 @@ import numpy.typing as npt
 from agentface.deform import tables as deform_tables
 from agentface.head.look import Look
 from agentface.head.model import HeadModel
+from agentface.io.web.basis import Basis
 from agentface.view.portrait import portrait
 
 EXTENSION = "AGENTFACE_face"
@@ -32,15 +33,8 @@ _KINDS = {"f4": "f32", "i4": "i32", "u4": "u32", "i2": "i16", "u2": "u16", "i1":
 _SHORT = 65535
 
 
-def encode_head(model: HeadModel, look: Look, basis: dict[str, Any], deformer: str) -> bytes:
-    """The file of a face in a look.
-
-    Args:
-        model: the face.
-        look: its colours and lights.
-        basis: ``skin`` and ``tongue``, each with ``shapes (K, N, 3)`` int16 and ``scales (K,)`` float32 m: a vertex
-            lies at rest + sum w_k scales_k shapes_k. The skin's are those before its last stages.
-        deformer: whose movements the basis has.
+def encode_head(model: HeadModel, look: Look, basis: Basis) -> bytes:
+    """The file of a face in a look, with the movements of ``basis``.
 
     The same arguments give the same bytes. Raises DataError as :func:`~agentface.head.skin_image.skin_image`.
     """
@@ -49,10 +43,9 @@ def encode_head(model: HeadModel, look: Look, basis: dict[str, Any], deformer: s
     record = {
         "version": VERSION,
         "face": model.name,
-        "deformer": deformer,
         "finish": _finish(model),
         "rest": {"vertices": model.vertices, "triangles": model.triangles},
-        "basis": basis,
+        "basis": {"skin": basis.skin._asdict(), "tongue": basis.tongue._asdict()},
         **drawn,
         "picture": _png(drawn["picture"]),
     }

@@ -13,7 +13,7 @@ await mkdir(dist);
 const result = await build({
   entryPoints: [join(here, 'src/index.js')], outfile: join(dist, 'agentface.js'),
   bundle: true, minify: true, format: 'esm', target: 'es2022', legalComments: 'none', metafile: true,
-  banner: { js: '/* agentface, MIT; three.js, MIT: see agentface.js.LICENSES.txt */' },
+  banner: { js: '/* agentface, MIT; three.js, MIT: see licences.txt */' },
 });
 
 const packages = new Set();
@@ -26,5 +26,5 @@ for (const name of [...packages].sort()) {
   const { version, license } = JSON.parse(await readFile(join(here, 'node_modules', name, 'package.json'), 'utf8'));
   texts.push(`${name} ${version} (${license})\n\n${await readFile(join(here, 'node_modules', name, 'LICENSE'), 'utf8')}`);
 }
-await writeFile(join(dist, 'agentface.js.LICENSES.txt'), texts.join('\n\n'));
+await writeFile(join(dist, 'licences.txt'), texts.join('\n\n'));
 await copyFile(join(here, 'index.html'), join(dist, 'index.html'));
