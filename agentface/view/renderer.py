@@ -24,14 +24,14 @@ from agentface.view.gl.quality import quality_named
 from agentface.view.gl.shadow import KeyShadow
 from agentface.view.gl.targets import Targets, checked_size
 from agentface.view.gl.uniforms import pack_frame, pixels_a_metre, shadow_projection, unit
-from agentface.view.hair.brows import BrowLine, brow_hairs, lash_hairs
-from agentface.view.hair.hairline import Hairline, hair_shade, hidden
+from agentface.view.hair.brows import brow_hairs, lash_hairs
+from agentface.view.hair.grown import covered, shade_on
 from agentface.view.hair.head_hair import HeadHair
 from agentface.view.hair.ribbons import HairArray
 from agentface.view.parts.anchored import AnchoredArray, eye_linings
 from agentface.view.parts.bone import Bone, BoneView
 from agentface.view.parts.mouth import Mouth
-from agentface.view.parts.rigid import Eyeball, RigidPart
+from agentface.view.parts.rigid import IRIS_RADIUS, Eyeball, RigidPart
 from agentface.view.skin import pores
 from agentface.view.skin.complexion import complexion, folds
 from agentface.view.skin.fine_lips import FineLips
@@ -43,7 +43,7 @@ _SEED = 20
 _LIP_CUTS = 2
 _SOFTNESSES = 0.35, 0.1  # of brows and lashes
 _FRAME_BYTES = 3 * 64 + 11 * 16
-_IRIS_RADIUS = 0.405  # in radii of the eyeball
+
 _LONGEST_EDGE = 16.0  # pixels; longer edges of fine skin are cut and curved
 _SPARE_PIXELS = 400_000  # samples, of 20 bytes, that pictures of other sizes may keep
 _COARSEST, _FINEST = 6, 10  # the lengths of those edges are powers of two: 16 mm to 1 mm
@@ -111,7 +111,7 @@ class Renderer:
         ]
         front = float(model.landmarks["upper_lip_middle"][2])
         self._programs.wear(self.look)
-        self._programs.set({"mouth_front": front, "atlas_height": self._wrinkles.height, "iris_radius": _IRIS_RADIUS})
+        self._programs.set({"mouth_front": front, "atlas_height": self._wrinkles.height, "iris_radius": IRIS_RADIUS})
 
     def current(self) -> AbstractContextManager[None]:
         """A block in which several pictures are drawn with no change of contexts between them.
@@ -328,14 +328,9 @@ class Renderer:
     def _dressed(self, normals: Floats) -> dict[str, Floats]:
         """What the look makes of the skin's vertices."""
         hair, model = self.look.hair, self.model
-        covered = 0.55 * hair.brow_density * BrowLine(model).density(model.vertices)
-        if hair.style != "none":
-            covered = np.maximum(covered, hidden(model, Hairline(model, hair.hairline), hair))
-        shade = hair_shade(model, hair)
-        if self._head_hair is not None:
-            shade = np.maximum(shade, self._head_hair.shade(model.vertices))
+        shade = shade_on(model, hair)
         dressed = {
-            "complexion": complexion(model, np.asarray(np.clip(covered, 0, 1), np.float32), self.look.skin.stubble),
+            "complexion": complexion(model, covered(model, hair), self.look.skin.stubble),
             "ambient": (folds(model) * (1 - shade[:, None])).astype(np.float32),
             "lit_at_rest": self._lit_at_rest(normals),
         }

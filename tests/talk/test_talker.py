@@ -15,8 +15,8 @@ from agentface.requests.say import script_of
 from agentface.speech.phones import Phone
 from agentface.speech.script import Script
 from agentface.speech.sound import Sound
-from agentface.speech.speaker import Order, Speaker
 from agentface.speech.spoken import Spoken, joined, speak_line, speak_script
+from agentface.speech.synthesizer import Order, Synthesizer
 from agentface.talk.talker import LEAD_S, MOST_TEXTS, Talker
 from tests.voices import RATE, FakeVoice
 from tests.waiting import until
@@ -27,8 +27,8 @@ class Face:
 
     def __init__(self, voice=None):
         self.voice = voice or FakeVoice()
-        self.speaker = Speaker(lambda _voice, _language, ours=self.voice: ours)
-        self.talker = Talker(self, self.speaker)
+        self.synthesizer = Synthesizer(lambda _voice, _language, ours=self.voice: ours)
+        self.talker = Talker(self, self.synthesizer)
         self.now, self.emotion, self.asked, self.mouth = 0.0, EmotionState.of(happiness=0.2), [], None
 
     @property
@@ -282,13 +282,13 @@ def test_a_face_that_is_gone_takes_its_voices_along():
         thread.join()
 
 
-def test_a_closed_speaker_is_silent():
-    speaker = Speaker(lambda *_: FakeVoice())
-    speaker.close()
-    speaker.ask(Order(Script.of("One.")))
-    speaker.wait()
-    assert speaker.take() is None
-    speaker.close()
+def test_a_closed_synthesizer_is_silent():
+    synthesizer = Synthesizer(lambda *_: FakeVoice())
+    synthesizer.close()
+    synthesizer.ask(Order(Script.of("One.")))
+    synthesizer.wait()
+    assert synthesizer.take() is None
+    synthesizer.close()
 
 
 def test_parts_are_joined_to_the_sample():

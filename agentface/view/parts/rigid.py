@@ -12,6 +12,9 @@ from agentface.head.model import HeadModel
 from agentface.head.ring_names import LidRing
 from agentface.mesh.normals import vertex_normals
 
+IRIS_RADIUS = 0.405
+"""In radii of the eyeball."""
+
 
 class RigidPart:
     """A mesh on the GPU: position, normal and material of each vertex, and where it lies on a tooth or shirt."""
