@@ -66,7 +66,7 @@ class Actor:
 
     async def picture(self, drawing: Drawing) -> Bytes:
         """The face as it is shown; raises GraphicsError."""
-        geometry = await self.call(lambda: self.face.geometry.copy())
+        geometry = await self.call(self.face.geometry.copy)
         loop = asyncio.get_running_loop()
         return await loop.run_in_executor(self._thread, self._painter.draw, geometry, drawing)
 

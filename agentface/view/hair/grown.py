@@ -1,4 +1,4 @@
-"""The hair of a face, grown once and kept: sheets, strands, and what it does to the skin beside and below it."""
+"""The hair of a head as it grows at rest, grown once and kept."""
 
 from __future__ import annotations
 
@@ -11,55 +11,70 @@ from agentface.cache import stamp_of
 from agentface.conventions import Doubles, Floats
 from agentface.head.look import HairLook
 from agentface.head.model import HeadModel
-from agentface.view.hair.brows import BrowLine
+from agentface.view.hair.cap import scalp_cap
 from agentface.view.hair.groom import groom
-from agentface.view.hair.hairline import Hairline, hair_shade, hidden
+from agentface.view.hair.hairline import Hairline
 from agentface.view.hair.hull import Hull
 from agentface.view.hair.sheets import Sheet, edge_shade, flyaways, parting_line, sheets
 from agentface.view.hair.strands import Strands
 from agentface.view.hair.styles import PARTED, STYLES
+from agentface.view.parts.anchored import Anchored
 
 _T = TypeVar("_T")
 _SEED = 20
-_BROW_TINT = 0.55
+_GLOSS = {"cropped": 0.25, "swept": 0.8, "bob": 0.9, "bun": 0.9}
+_NO_PARTING = 1.0, 1.0, 1.0, 1.0
+"""The uniform ``parting`` of ``shaders/cap.frag.glsl``, far from the head."""
 
 
-def grown_sheets(model: HeadModel, look: HairLook) -> tuple[Doubles, list[Sheet]] | None:
-    """The parting ``(N, 3)`` m and the sheets, the outer ones first; None for a style that has none."""
+class GrownHair:
+    """Hair of any style but ``none``, as it grows at rest.
 
-    def grow() -> tuple[Doubles, list[Sheet]]:
-        hull = Hull(model, ears=True)
-        line = parting_line(model, look, hull)
-        return line, sheets(model, look, hull, np.random.default_rng(_SEED))
+    ``centre (3,)`` m is that of the head; ``sheets`` are long hair, ``parting (4,)`` where it parts, as the uniform of
+    ``shaders/cap.frag.glsl``.
+    """
 
-    return _kept(model, look, "sheets", grow) if look.style in PARTED else None
+    def __init__(self, model: HeadModel, look: HairLook) -> None:
+        self._model, self._look = model, look
+        self.centre = np.array([0.0, 0.4 * model.landmarks.eye_separation, -0.012])
+        self.sheets: list[Sheet] = []
+        self.parting: tuple[float, ...] = _NO_PARTING
+        if look.style in PARTED:
+            line, self.sheets = self._kept("sheets", self._grow_sheets)
+            self.parting = tuple(line[[0, 0, -1, -1], [0, 2, 0, 2]].tolist())
 
+    @property
+    def gloss(self) -> float:
+        """How much it shines, 0..1."""
+        return _GLOSS[self._look.style]
 
-def grown_strands(model: HeadModel, look: HairLook, quality: str) -> Strands:
-    """The strands of a quality, of any style but ``none``; beside sheets these are single hairs."""
+    @property
+    def coils(self) -> float:
+        """1 where what one sees of the cap is the hair itself, else 0."""
+        return float(self._look.style == "cropped")
 
-    def grow() -> Strands:
-        rng, found = np.random.default_rng(_SEED), grown_sheets(model, look)
-        if found is not None:
-            return flyaways(found[1], STYLES[look.style].amounts[quality], look, rng).in_order(model)
+    def cap(self) -> Anchored:
+        """The layer on the scalp."""
+        return scalp_cap(self._model, Hairline(self._model, self._look.hairline), self._look)
+
+    def shade(self, skin: Floats) -> Doubles:
+        """``(V,)`` 0..1: the part of the surroundings' light that hair at the face keeps off the ``skin (V, 3)``."""
+        return edge_shade(self.sheets, skin)
+
+    def strands(self, quality: str) -> Strands:
+        """The strands of a quality."""
+        return self._kept(f"strands.{quality}", lambda: self._grow_strands(quality))
+
+    def _kept(self, name: str, grow_it: Callable[[], _T]) -> _T:
+        return self._model.derived(f"view.{name}.{stamp_of((), repr(self._look))}", lambda _: grow_it())
+
+    def _grow_sheets(self) -> tuple[Doubles, list[Sheet]]:
+        hull = Hull(self._model, ears=True)
+        line = parting_line(self._model, self._look, hull)
+        return line, sheets(self._model, self._look, hull, np.random.default_rng(_SEED))
+
+    def _grow_strands(self, quality: str) -> Strands:
+        model, look, rng = self._model, self._look, np.random.default_rng(_SEED)
+        if self.sheets:
+            return flyaways(self.sheets, STYLES[look.style].amounts[quality], look, rng).in_order(model)
         return groom(model, model.normals, look, quality, rng)
-
-    return _kept(model, look, f"strands.{quality}", grow)
-
-
-def covered(model: HeadModel, look: HairLook) -> Floats:
-    """``(V,)`` 0..1: how much of the skin's colour is that of the hair on it, brows among it."""
-    tint = _BROW_TINT * look.brow_density * BrowLine(model).density(model.vertices)
-    if look.style != "none":
-        tint = np.maximum(tint, hidden(model, Hairline(model, look.hairline), look))
-    return np.asarray(np.clip(tint, 0, 1), np.float32)
-
-
-def shade_on(model: HeadModel, look: HairLook) -> Doubles:
-    """``(V,)`` 0..1: the part of the surroundings' light that hair keeps off the skin."""
-    found, shade = grown_sheets(model, look), hair_shade(model, look)
-    return shade if found is None else np.maximum(shade, edge_shade(found[1], model.vertices))
-
-
-def _kept(model: HeadModel, look: HairLook, name: str, grow_it: Callable[[], _T]) -> _T:
-    return model.derived(f"view.{name}.{stamp_of((), repr(look))}", lambda _: grow_it())
