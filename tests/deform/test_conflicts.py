@@ -48,6 +48,7 @@ def check_poses(face, seed):
             "tongue",
             "pupils",
             "eye_thrust",
+            "shoulders",
         ):
             assert np.isfinite(getattr(geometry, name)).all(), (number, name)
         over = np.flatnonzero(edges.flipped(geometry.vertices) & outside)
