@@ -122,6 +122,11 @@ class Talker:
         return tuple(said.text for said in self._texts)
 
     @property
+    def now_s(self) -> float:
+        """The seconds that have passed."""
+        return self._now
+
+    @property
     def due_s(self) -> float:
         """In how many seconds something is to happen, so that nobody steps over it; infinite where nothing is."""
         event = self._events[0][0] if self._events else math.inf
