@@ -12,7 +12,7 @@ import numpy as np
 from agentface.face import Face
 from agentface.live.loop import Frame
 from agentface.live.notes import Recorder
-from agentface.speech.sound import Samples, Sound, mixed
+from agentface.speech.sound import SLOWEST_RATE_HZ, Samples, Sound, mixed
 
 
 class HeardRecorder:
@@ -79,6 +79,7 @@ class LiveSound:
         self._talker = face.talker
         self._parts: list[_Part] = []
         self._changing = Lock()
+        Sound(np.zeros(1, np.int16), SLOWEST_RATE_HZ).at_rate(rate_hz)  # what that loads, the loop would wait for later
         self._ahead_s = -self._talker.now_s
         """How much later the loop's time is than the talker's."""
 
