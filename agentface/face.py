@@ -98,6 +98,7 @@ class Face(ExpressionCalls, MovementCalls, SpeechCalls, AwaitableTwins):
             random=self.random.spawn(1)[0],
             gestures=all_gestures(gestures),
         )
+        self._events.follow(self.channels)
         SetLiveliness(liveliness, 0.0).apply(self)
         self._deformer = make_deformer(deformer, self.model, compiled=compiled)
         self._renderer: Renderer | None = None
@@ -132,10 +133,11 @@ class Face(ExpressionCalls, MovementCalls, SpeechCalls, AwaitableTwins):
         return self._events.ask(request)
 
     def on(self, event: str, call: Callable[[Any], object]) -> None:
-        """Call ``call``, after a step, whenever something is over; one of ``EVENTS``, raises UnknownNameError.
+        """Call ``call``, after a step, whenever something has happened; one of ``EVENTS``, raises UnknownNameError.
 
         ``spoken``: a text that was said; ``hushed``: one that was cut short; ``failed``: what went wrong with one, an
-        AgentFaceError; ``gestured``: a gesture's name; ``played``: a performance.
+        AgentFaceError; ``gestured``: a gesture's name; ``played``: a performance; ``reached``: the emotions that the
+        face has come to, an EmotionState; ``blink``: how far one closes the eyes, 0..1.
         """
         self._events.on(event, call)
 

@@ -266,13 +266,15 @@ def _run(
 
 def _film_now(server: OscServer, faces: Mapping[str, Face], ending: Ending, shot: Shot, duration: float) -> None:
     from agentface.clock import SystemClock
+    from agentface.io.video import SOUND_HZ
+    from agentface.live.heard import LiveSound
     from agentface.live.loop import run
     from agentface.live.newest import LiveSink
 
-    face = _only(faces)
-    with LiveSink(lambda: shot.open(face.model, duration if math.isfinite(duration) else None)) as film:
+    face, last_s = _only(faces), duration if math.isfinite(duration) else None
+    with LiveSound(face, SOUND_HZ) as sound, LiveSink(lambda: shot.open(face.model, last_s, sound)) as film:
         _announce(faces, server)
-        frames = run(face, SystemClock(), [server], [film], fps=shot.fps, duration=duration, stopped=ending.told)
+        frames = run(face, SystemClock(), [server], [sound, film], fps=shot.fps, duration=duration, stopped=ending.told)
     if film.dropped:
         lost = f"{film.dropped} of {frames} frames are left out, as this machine draws too slowly for them"
         tell(f"{shot.path}: {lost}; --every-frame films all of them")

@@ -32,6 +32,7 @@ class Utterance:
 
     Attributes:
         doing: whether it waits, is said, or is over.
+        told: its phones, as they were told.
     """
 
     def __init__(
@@ -46,6 +47,7 @@ class Utterance:
     ) -> None:
         self._articulation, self._loudness, self.live = articulation, loudness, live
         self.doing = Doing()
+        self.told = tuple(phones)
         self._phones = [_moved(phone, start, rate) for phone in phones]
         self._looks = list(looks)
         self._starts = [phone.start_s for phone in self._phones]

@@ -20,7 +20,7 @@ from agentface.requests.neutral import Neutral
 from agentface.requests.performance import Play
 from agentface.requests.request import FADE_S, Movable, Request
 from agentface.requests.say import Say
-from agentface.requests.speech import Hush, ShowViseme, Speak
+from agentface.requests.speech import Hush, ShowViseme, Speak, TakeBack
 from agentface.requests.turn import GAZE_FADE_S, HEAD_FADE_S, LookAt, SetGaze, SetHead
 
 __all__ = [
@@ -52,4 +52,5 @@ __all__ = [
     "SetState",
     "ShowViseme",
     "Speak",
+    "TakeBack",
 ]
