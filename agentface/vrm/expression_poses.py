@@ -14,7 +14,7 @@ from agentface.emotion.state import EMOTIONS
 from agentface.head.model import HeadModel
 from agentface.parameters import COUNT, HIGH, LOW, MUSCLES, NEUTRAL, indices_of
 from agentface.speech.visemes import viseme_table
-from agentface.vrm.expressions import Expression, ExpressionTable, expression_table
+from agentface.vrm.expressions import ExpressionTable, Preset, expression_table
 
 _FELT = np.array([(index, row) for row, muscle in enumerate(MUSCLES) for index in indices_of(muscle)])
 _LIDS = dict(zip(("left", "right"), indices_of("orbicularis_oculi_palpebralis"), strict=True))
@@ -60,7 +60,7 @@ class ExpressionPoses:
                 moves[_GAZE] |= np.array(row.looks) != 0.0
         return np.clip(values, LOW, HIGH), moves
 
-    def _feel(self, rows: list[tuple[Expression, float]], values: Floats, moves: Flags) -> None:
+    def _feel(self, rows: list[tuple[Preset, float]], values: Floats, moves: Flags) -> None:
         felt = [(row.emotions, weight) for row, weight in rows if row.emotions]
         if not felt:
             return
@@ -72,7 +72,7 @@ class ExpressionPoses:
         values[places] = self._inference.course(np.minimum(state, 1.0))[0][muscles] * self._gains[places]
         moves[places] = True
 
-    def _speak(self, rows: list[tuple[Expression, float]], values: Floats, moves: Flags) -> None:
+    def _speak(self, rows: list[tuple[Preset, float]], values: Floats, moves: Flags) -> None:
         said = [(row.viseme, weight) for row, weight in rows if row.viseme is not None]
         if not said:
             return

@@ -39,10 +39,11 @@ class _Row(Table):
 class _File(Table):
     expressions: dict[str, _Row]
     felt: dict[_Emotion, dict[str, _Share]]
+    neck: Annotated[float | int, Field(ge=0.0, le=1.0)]
 
 
 @dataclass(frozen=True, slots=True)
-class Expression:
+class Preset:
     """A preset, and what the face does for it: one of four things, or nothing.
 
     Attributes:
@@ -62,14 +63,20 @@ class Expression:
     looks: tuple[float, float] | None
 
 
-class ExpressionTable(Mapping[str, Expression]):
-    """The presets by VRM 1.0's names; ``felt``: 0..1 by preset, for each of the six emotions."""
+class ExpressionTable(Mapping[str, Preset]):
+    """The presets by VRM 1.0's names.
 
-    def __init__(self, expressions: tuple[Expression, ...], felt: Mapping[str, Mapping[str, float]]) -> None:
+    Attributes:
+        felt: 0..1 by preset, for each of the six emotions.
+        neck: 0..1, the part of the head's turn that is the neck's.
+    """
+
+    def __init__(self, expressions: tuple[Preset, ...], felt: Mapping[str, Mapping[str, float]], neck: float) -> None:
+        self.neck = neck
         self.felt = {emotion: dict(shares) for emotion, shares in felt.items()}
         self._named = {expression.name: expression for expression in expressions}
 
-    def __getitem__(self, name: str) -> Expression:
+    def __getitem__(self, name: str) -> Preset:
         return self._named[name]
 
     def __iter__(self) -> Iterator[str]:
@@ -90,7 +97,7 @@ def load_expressions(path: str | Path) -> ExpressionTable:
     _check_rows(document, file)
     document.check()
     expressions = tuple(_expression(name, file.expressions[name]) for name in PRESETS)
-    return ExpressionTable(expressions, {str(emotion): shares for emotion, shares in file.felt.items()})
+    return ExpressionTable(expressions, {str(emotion): shares for emotion, shares in file.felt.items()}, file.neck)
 
 
 def _check_names(
@@ -119,10 +126,10 @@ def _check_rows(document: Document, file: _File) -> None:
         taken.add(row.vrm0)
 
 
-def _expression(name: str, row: _Row) -> Expression:
+def _expression(name: str, row: _Row) -> Preset:
     looks = None if row.looks is None else (float(row.looks[0]), float(row.looks[1]))
     emotions = {str(emotion): float(share) for emotion, share in row.emotions.items()}
-    return Expression(name, row.vrm0, emotions, row.viseme, tuple(map(str, row.closes)), looks)
+    return Preset(name, row.vrm0, emotions, row.viseme, tuple(map(str, row.closes)), looks)
 
 
 @cache

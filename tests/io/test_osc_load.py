@@ -58,7 +58,7 @@ class Flood:
             self._client.send(self._next())
             self.sent += 1
         end = time.monotonic() + 30
-        while len(self._server._waiting) < self.sent - before:
+        while len(self._server._listener.waiting) < self.sent - before:
             assert time.monotonic() < end, "a datagram is lost"
             time.sleep(0.0002)
 
