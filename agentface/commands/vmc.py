@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
-from agentface.commands.options import address
+from agentface.commands.options import address, wait_told
 from agentface.commands.streams import say
 
 if TYPE_CHECKING:
@@ -50,6 +50,9 @@ _OPTIONS = (
     ),
     click.option("--vmc-id", metavar="ID", help="Which of several faces VMC is for; the first otherwise."),
 )
+
+
+_PLACES = {"to": "vmc", "listen": "vmc_in", "names": "vmc_names", "axes": "vmc_axes", "id": "vmc_id"}
 
 
 @dataclass(frozen=True, slots=True)
@@ -103,10 +106,8 @@ def vmc_options(command: _Command) -> Callable[..., Any]:
 
     @wraps(command)
     def wrapper(*args: Any, **given: Any) -> Any:
-        to, listen, names, axes, id_ = (
-            given.pop(name) for name in ("vmc", "vmc_in", "vmc_names", "vmc_axes", "vmc_id")
-        )
-        return command(*args, vmc=VmcOptions(to, listen, names, axes, id_), **given)
+        said = {name: given.pop(place) for name, place in _PLACES.items()}
+        return command(*args, vmc=VmcOptions(**said), **given)
 
     for option in reversed(_OPTIONS):
         wrapper = option(wrapper)
@@ -137,17 +138,17 @@ def vmc_links(name: str, face: Face, options: VmcOptions) -> Iterator[VmcLinks]:
     links = VmcLinks()
     with ExitStack() as stack:
         if options.listen is not None:
-            receiver = stack.enter_context(VmcReceiver(face, *options.listen, axes=options.axes))
+            with wait_told(name, compiled=True):
+                receiver = stack.enter_context(VmcReceiver(face, *options.listen, axes=options.axes))
             links.sources.append(receiver)
             links.told.append(f"{name} is driven by VMC on {receiver.host}:{receiver.port}")
             face.reports["vmc_in"] = lambda: receiver.status
         if options.to is not None:
-            sender = stack.enter_context(VmcSender(face, *options.to, names=options.names, axes=options.axes))
-            # Presets are read off the channels, between two steps; the 52 cost some milliseconds and need the pose alone.
-            aside = None if are_presets(options.names) else LiveSink(lambda: nullcontext(sender))
-            links.sinks.append(sender if aside is None else stack.enter_context(aside))
-            links.told.append(
-                f"{name} is sent by VMC to {options.to[0]}:{options.to[1]}, with names of {options.names}"
-            )
+            with wait_told(name, compiled=True):
+                sender = stack.enter_context(VmcSender(face, *options.to, names=options.names, axes=options.axes))
+            links.told.append(f"{name} is sent by VMC to {sender.to}, with names of {options.names}")
+            links.sinks.append(sender)
             face.reports["vmc"] = lambda: sender.status
+            if not are_presets(options.names):  # they need the pose alone, and milliseconds that the face need not wait
+                links.sinks[-1] = stack.enter_context(LiveSink(lambda: nullcontext(sender)))
         yield links

@@ -27,10 +27,15 @@ class SetTracked(Request):
 
     def apply(self, face: Movable) -> None:
         """Tell the tracker's channel, which is there from the first frame on."""
-        channel = face.channels.get(TRACKER_CHANNEL)
-        if not isinstance(channel, TrackerChannel):
-            from agentface.emotion.inference import default_inference
+        tracker_channel(face).change(face.model, self.frame, self.fade)
 
-            channel = TrackerChannel(default_inference())
-            face.channels[TRACKER_CHANNEL] = channel
-        channel.change(face.model, self.frame, self.fade)
+
+def tracker_channel(face: Movable) -> TrackerChannel:
+    """The tracker's channel of a face, which it has from now on."""
+    channel = face.channels.get(TRACKER_CHANNEL)
+    if not isinstance(channel, TrackerChannel):
+        from agentface.emotion.inference import default_inference
+
+        channel = TrackerChannel(default_inference())
+        face.channels[TRACKER_CHANNEL] = channel
+    return channel

@@ -67,6 +67,11 @@ class TrackerChannel(StreamChannel):
         self._solver: ShapeSolver | None = None
         self._found: ArkitSolution | None = None
 
+    def warm_up(self, model: HeadModel) -> None:
+        """Make now what the first frame needs, which takes seconds the first time on a machine."""
+        self._solver_of(model).solve_named({ARKIT_SHAPES[0]: 0.0})
+        self._poses_of(model).pose({})
+
     def change(self, model: HeadModel, frame: Tracked, fade: float = STREAM_FADE_S) -> None:
         """Show a frame."""
         self._frame = frame
@@ -76,19 +81,26 @@ class TrackerChannel(StreamChannel):
         """The frame that waits, as values and weights ``(COUNT,)``, on a face."""
         frame, values, moves = self._frame, NEUTRAL.copy(), np.zeros(COUNT, np.bool_)
         if frame.weights:
-            if self._solver is None:
-                from agentface.arkit.shape_solver import ShapeSolver
-
-                self._solver = ShapeSolver(model)
-            self._found = self._solver.solve_named(dict(frame.weights), self._found)
+            self._found = self._solver_of(model).solve_named(dict(frame.weights), self._found)
             moves |= self._found.moves
             values[moves] = self._found.pose.array[moves]
         if frame.expressions:
-            self._poses = self._poses or ExpressionPoses(model, self._inference)
-            posed, moved = self._poses.pose(dict(frame.expressions))
+            posed, moved = self._poses_of(model).pose(dict(frame.expressions))
             values = np.clip(values + posed, LOW, HIGH)
             moves |= moved
         for angles, places in ((frame.head, _HEAD), (frame.gaze, _GAZE)):
             if angles is not None:
                 values[places], moves[places] = angles, True
         return values, moves.astype(np.float32)
+
+    def _solver_of(self, model: HeadModel) -> ShapeSolver:
+        if self._solver is None:
+            from agentface.arkit.shape_solver import ShapeSolver
+
+            self._solver = ShapeSolver(model)
+        return self._solver
+
+    def _poses_of(self, model: HeadModel) -> ExpressionPoses:
+        if self._poses is None:
+            self._poses = ExpressionPoses(model, self._inference)
+        return self._poses

@@ -14,6 +14,7 @@ from agentface.io.osc.codec import MalformedError, read, split
 from agentface.io.vmc.tracker import BONE, BONES, PREFIX, USED, TrackerState
 from agentface.motion.performance import HOLD_S
 from agentface.requests import SetTracked
+from agentface.requests.tracked import tracker_channel
 
 LARGEST_DATAGRAM = 65507
 """Bytes, all that UDP can carry: a whole body and its shapes come in one bundle."""
@@ -40,6 +41,7 @@ class VmcReceiver:
 
     def __init__(self, face: Face, host: str, port: int, *, axes: str = "unity") -> None:
         self._face = face
+        tracker_channel(face).warm_up(face.model)
         self._state = TrackerState(axes)
         self._frames = 0
         self._last_s: float | None = None

@@ -45,10 +45,15 @@ class VmcSender:
         self.sent = self.failed = 0
 
     @property
+    def to(self) -> str:
+        """Host and port of the receiver."""
+        host, port = self._place[:2]
+        return f"{host}:{port}"
+
+    @property
     def status(self) -> dict[str, Any]:
         """Where it sends, in whose names, and how many frames were sent and could not be, JSON-ready."""
-        host, port = self._place[:2]
-        return {"to": f"{host}:{port}", "names": self.names, "frames": self.sent, "failed": self.failed}
+        return {"to": self.to, "names": self.names, "frames": self.sent, "failed": self.failed}
 
     def show(self, frame: Frame) -> None:
         """Send one frame."""
