@@ -38,6 +38,9 @@ class ShownExpressions:
     """
 
     def __init__(self, model: HeadModel, inference: Inference, table: ExpressionTable | None = None) -> None:
+        from scipy.optimize import nnls
+
+        self._nearest = nnls
         poses = ExpressionPoses(model, inference, table)
         table = poses.table
         self._felt = np.array([[table.felt[emotion].get(name, 0.0) for name in PRESETS] for emotion in EMOTIONS])
@@ -68,15 +71,13 @@ class ShownExpressions:
         return self._weights(values, told, felt * left * (1.0 - heard))
 
     def _weights(self, values: Floats, told: Doubles, felt: Doubles) -> Doubles:
-        from scipy.optimize import nnls
-
         beside = np.asarray(values, np.float64) - felt
-        whole = nnls(self._basis, _to_come_near(beside))[0]
+        whole = self._nearest(self._basis, _to_come_near(beside))[0]
         levels = [float(np.interp(part, *rise)) for part, rise in zip(whole, self._rises, strict=False)]
         beside -= self._poses.pose(dict(zip(self._emotions, levels, strict=True)))[0]
         found = told.copy()
         found[self._felt_places] += levels
-        found[self._other_places] += nnls(self._basis[:, len(levels) :], _to_come_near(beside))[0]
+        found[self._other_places] += self._nearest(self._basis[:, len(levels) :], _to_come_near(beside))[0]
         found[self._said] *= 1.0 - min(max(float(values[_SEAL]), 0.0), 1.0)
         found = np.minimum(found, 1.0)
         both, left, right = (PRESETS.index(name) for name in ("blink", "blinkLeft", "blinkRight"))
