@@ -52,8 +52,8 @@ class FrameBundle:
             bones: ``POSE`` numbers for each of ``BONES``, in the protocol's axes.
             weights: 0..1 for each name.
         """
-        numbers = np.array([time_s, *bones, *np.asarray(weights).tolist()], ">f4")
-        self._bytes[self._places] = numbers.view(np.uint8).reshape(-1, 4)
+        numbers = np.array([time_s, *bones, *np.asarray(weights).tolist()]) + 0.0  # no negative zeros
+        self._bytes[self._places] = numbers.astype(">f4").view(np.uint8).reshape(-1, 4)
         return self._bytes.tobytes()
 
 
