@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from functools import cache
+
 import numpy as np
 
 from agentface.arkit.eye_looks import EyeLooks
-from agentface.conventions import Doubles, Floats
+from agentface.conventions import Doubles, Floats, Indices
 from agentface.emotion.inference import Inference
 from agentface.emotion.state import EMOTIONS
 from agentface.head.model import HeadModel
@@ -112,9 +114,14 @@ def _rise(poses: ExpressionPoses, name: str) -> tuple[Doubles, Doubles]:
 
 def _written(channel: Channel) -> Doubles:
     """``(2, COUNT)``: values and weights of what a channel wants now; nothing of what it does not move."""
-    places = [indices_of(name)[0] for name in channel.names]
+    places = _places(tuple(channel.names))
     wanted = np.zeros((2, COUNT))
     values, weights = np.zeros(len(places)), np.ones(len(places))
     if channel.write(values, weights) is not False:
         wanted[0, places], wanted[1, places] = values, weights
     return wanted
+
+
+@cache
+def _places(names: tuple[str, ...]) -> Indices:
+    return np.array([indices_of(name)[0] for name in names], np.int32)
