@@ -11,11 +11,11 @@ from agentface.head.model import HeadModel
 from agentface.vrm.expressions import ExpressionTable, expression_table
 from agentface.vrm.turns import Quaternion, inverse, part_of, product, quaternion_of
 
-_NECK_M = 0.08
+_NECK_M = 0.09
 """So far below the point about which this head turns an avatar's neck begins: ours."""
 
 
-class Bone(NamedTuple):
+class BonePose(NamedTuple):
     """A bone in its parent: where it begins, in metres, and its turn."""
 
     position: tuple[float, float, float]
@@ -35,16 +35,16 @@ class FaceBones:
         joint = head_turn.prepare(model).neck
         self._eyes = [_place(model.eye_centre(side) - joint) for side in SIDES]
 
-    def bones(self, geometry: FaceGeometry) -> dict[str, Bone]:
+    def bones(self, geometry: FaceGeometry) -> dict[str, BonePose]:
         """``Neck``, in the body, ``Head``, in the neck, ``LeftEye`` and ``RightEye``, in the head."""
         turn = quaternion_of(geometry.head[:3, :3])
         neck = part_of(turn, self._share)
         eyes = [quaternion_of(rotation) for rotation in geometry.eye_rotations]
         return {
-            "Neck": Bone((0.0, _NECK_M, 0.0), neck),
-            "Head": Bone((0.0, _NECK_M, 0.0), product(inverse(neck), turn)),
-            "LeftEye": Bone(self._eyes[0], eyes[0]),
-            "RightEye": Bone(self._eyes[1], eyes[1]),
+            "Neck": BonePose((0.0, _NECK_M, 0.0), neck),
+            "Head": BonePose((0.0, _NECK_M, 0.0), product(inverse(neck), turn)),
+            "LeftEye": BonePose(self._eyes[0], eyes[0]),
+            "RightEye": BonePose(self._eyes[1], eyes[1]),
         }
 
 
