@@ -28,7 +28,7 @@ LAYERS = (
     ("vrm",),
     ("requests",),
     ("view", "talk"),
-    ("events",),
+    ("events", "calls"),
     ("face",),
     ("live", "agents"),
     ("io",),

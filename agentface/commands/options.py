@@ -78,6 +78,11 @@ def address(_: click.Context, __: click.Parameter, value: str) -> tuple[str, int
     return host.strip("[]"), int(port)
 
 
+def optional_address(ctx: click.Context, option: click.Parameter, value: str | None) -> tuple[str, int] | None:
+    """``HOST:PORT``, or nothing."""
+    return None if value is None else address(ctx, option, value)
+
+
 AskedUnit: TypeAlias = tuple[str, str | float, str | None]
 """An action unit's number, its intensity or letter, its side."""
 

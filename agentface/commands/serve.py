@@ -21,6 +21,7 @@ from agentface.commands.options import (
     liveliness_option,
     look_option,
     make_face,
+    optional_address,
     size_option,
 )
 from agentface.commands.streams import say, tell
@@ -32,7 +33,9 @@ if TYPE_CHECKING:
 
     from agentface.face import Face
     from agentface.io.osc.server import OscServer
+    from agentface.io.web.server import WebServer
 
+_WEB = "Serve a page with the face, such as 127.0.0.1:8080; needs the extra web."
 _RECORD = "Film the face; a name like face-%05d.png gives numbered transparent pictures instead."
 
 
@@ -41,6 +44,13 @@ _RECORD = "Film the face; a name like face-%05d.png gives numbered transparent p
     "--osc", default="127.0.0.1:7400", callback=address, metavar="HOST:PORT", show_default=True, help="Where to listen."
 )
 @vmc_options
+@click.option("--web", callback=optional_address, metavar="HOST:PORT", help=_WEB)
+@click.option(
+    "--token", metavar="TOKEN", help="What --web asks of everyone; beyond this machine one is made if not given."
+)
+@click.option(
+    "--allow-origin", "origins", multiple=True, metavar="URL", help="A web site whose pages may ask --web, too."
+)
 @click.option("--view", type=click.Choice(["window", "none"]), default="none", show_default=True)
 @click.option("--record", type=click.Path(path_type=Path), metavar="FILE.mp4", help=_RECORD)
 @click.option(
@@ -72,6 +82,9 @@ def serve(
     *,
     osc: tuple[str, int],
     vmc: VmcOptions,
+    web: tuple[str, int] | None,
+    token: str | None,
+    origins: tuple[str, ...],
     view: str,
     record: Path | None,
     every_frame: bool,
@@ -95,7 +108,13 @@ def serve(
     agentface serve --face amber --id left --face onyx --id right
     agentface serve --vmc 127.0.0.1:39539 --vmc-in 127.0.0.1:39540
     """  # noqa: D301 - \b is click's mark of lines to keep
-    _check_options(given(ctx), window=view == "window", record=record is not None, several=len(names) > 1)
+    _check_options(
+        given(ctx),
+        window=view == "window",
+        record=record is not None,
+        several=len(names) > 1,
+        web=web is not None,
+    )
     _check_ids(names, ids)
     check_vmc(given(ctx), vmc)
     from agentface.io.osc.server import OscServer
@@ -106,19 +125,20 @@ def serve(
     ]
     faces = vmc.first(_by_id(made, ids))
     name = next(iter(faces))
+    rate = fps or (30.0 if record else 60.0)
     with (
         until_told() as ending,
         OscServer(faces if ids or len(made) > 1 else made[0], *osc) as server,
         vmc_links(name, faces[name], vmc) as links,
         _heard(faces),
+        _in_pages(faces, web, token, origins, deformer, look, rate) as pages,
     ):
         if view == "window":
             _in_a_window(server, links, faces, ending, look, quality, camera)
             return
-        rate = fps or (30.0 if record else 60.0)
         end = duration or math.inf
         if record is None:
-            _run(server, links, faces, ending, rate, end)
+            _run(server, links, faces, ending, rate, end, pages)
             return
         shot = Shot(record, size, camera, quality or "fast", rate, look, live=True)
         if every_frame:
@@ -128,7 +148,7 @@ def serve(
             _film_now(server, links, faces, ending, shot, end)
 
 
-def _check_options(names: set[str], *, window: bool, record: bool, several: bool) -> None:
+def _check_options(names: set[str], *, window: bool, record: bool, several: bool, web: bool) -> None:
     """Raise UsageError for the first option that would do nothing, or is for one face."""
     for name, goes_with, there in (
         ("record", "one --face", not several),
@@ -139,7 +159,11 @@ def _check_options(names: set[str], *, window: bool, record: bool, several: bool
         ("fps", "--view none", not window),
         ("every_frame", "--record", record),
         ("size", "--record", record),
-        ("look", "--view window or --record", window or record),
+        ("look", "--view window, --record or --web", window or record or web),
+        ("web", "--view none", not window),
+        ("web", "no --record", not record),
+        ("token", "--web", web),
+        ("origins", "--web", web),
         ("quality", "--view window or --record", window or record),
         ("camera", "--view window or --record", window or record),
     ):
@@ -214,15 +238,45 @@ def _in_a_window(
     window.run([server, *links.sources], links.sinks, stopped=ending.told)
 
 
+@contextmanager
+def _in_pages(
+    faces: Mapping[str, Face],
+    web: tuple[str, int] | None,
+    token: str | None,
+    origins: Sequence[str],
+    deformer: str,
+    look: str | None,
+    fps: float,
+) -> Iterator[list[WebServer]]:
+    """A server of pages, if one is asked for."""
+    if web is None:
+        yield []
+        return
+    from agentface.io.web.server import WebServer
+
+    with WebServer(
+        faces, *web, token=token, origins=origins, deformer=deformer, look=look, fps=fps, told=tell
+    ) as server:
+        for line in (f"the page is {server.url}", *server.access.told("it")):
+            say(line)
+        yield [server]
+
+
 def _run(
-    server: OscServer, links: VmcLinks, faces: Mapping[str, Face], ending: Ending, fps: float, duration: float
+    server: OscServer,
+    links: VmcLinks,
+    faces: Mapping[str, Face],
+    ending: Ending,
+    fps: float,
+    duration: float,
+    pages: Sequence[WebServer],
 ) -> None:
     from agentface.clock import SystemClock
     from agentface.live.loop import run
 
     face, *beside = faces.values()
     _announce(faces, server, links)
-    sources, sinks = [server, *links.sources], links.sinks
+    sources, sinks = [server, *links.sources, *pages], [*links.sinks, *pages]
     run(face, SystemClock(), sources, sinks, fps=fps, duration=duration, stopped=ending.told, beside=beside)
 
 

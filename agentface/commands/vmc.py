@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
-from agentface.commands.options import address, wait_told
+from agentface.commands.options import optional_address, wait_told
 from agentface.commands.streams import say
 
 if TYPE_CHECKING:
@@ -23,7 +23,7 @@ _OPTIONS = (
     click.option(
         "--vmc",
         default=None,
-        callback=lambda ctx, param, value: value and address(ctx, param, value),
+        callback=optional_address,
         metavar="HOST:PORT",
         help="Show the face on an avatar that listens to the VMC protocol there, as on 127.0.0.1:39539.",
     ),
@@ -37,7 +37,7 @@ _OPTIONS = (
     click.option(
         "--vmc-in",
         default=None,
-        callback=lambda ctx, param, value: value and address(ctx, param, value),
+        callback=optional_address,
         metavar="HOST:PORT",
         help="Listen there to a tracker that speaks VMC, and do as it says.",
     ),

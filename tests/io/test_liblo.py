@@ -26,7 +26,7 @@ def port():
     command = [sys.executable, "-m", "agentface", "serve", "--osc", "127.0.0.1:0"]
     environment = os.environ | {"PYTHONUNBUFFERED": "1"}
     with subprocess.Popen(command, stdout=subprocess.PIPE, text=True, env=environment) as server:
-        watchdog = threading.Timer(120, server.kill)
+        watchdog = threading.Timer(280, server.kill)
         watchdog.start()
         try:
             yield int(re.search(r"127\.0\.0\.1:(\d+)", server.stdout.readline())[1])
@@ -39,7 +39,7 @@ def port():
 def client(port):
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as client:
         client.connect(("127.0.0.1", port))
-        client.settimeout(30)
+        client.settimeout(200)
         yield client
 
 

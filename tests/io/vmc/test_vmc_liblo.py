@@ -16,6 +16,7 @@ from agentface.io.vmc.sender import VmcSender
 from agentface.live.loop import Frame
 from tests.heads import head_model
 from tests.tools import require
+from tests.waiting import until
 
 pytestmark = pytest.mark.slow
 
@@ -54,11 +55,12 @@ def test_what_oscsend_sends_drives_the_face():
         oscsend(receiver.port, "/VMC/Ext/Blend/Val", "sf", "Joy", 1.0)
         oscsend(receiver.port, "/VMC/Ext/Bone/Pos", "sfffffff", "Head", *[0.0] * 6, 1.0)
         oscsend(receiver.port, "/VMC/Ext/Blend/Apply")
-        end = time.monotonic() + 30.0
-        while receiver.status["used"] < 4:
-            assert time.monotonic() < end
+
+        def take_in():
             time.sleep(0.01)
             receiver.take_in(0.0)
+
+        until(lambda: receiver.status["used"] == 4, take_in)
         face.step(0.05)
         assert face.pose["zygomaticus_major_l"] > 0.7
         assert receiver.status["loaded"] is True
