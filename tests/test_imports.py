@@ -25,6 +25,7 @@ LAYERS = (
     ("tissue", "mpeg4"),
     ("motion",),
     ("arkit", "bml"),
+    ("vrm",),
     ("requests",),
     ("view", "talk"),
     ("events", "calls"),
