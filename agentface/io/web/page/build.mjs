@@ -34,4 +34,4 @@ for (const name of [...packages].sort()) {
   texts.push(`${name} ${version} (${license})\n\n${await readFile(join(here, 'node_modules', name, 'LICENSE'), 'utf8')}`);
 }
 await writeFile(join(dist, 'licences.txt'), texts.join('\n\n'));
-await copyFile(join(here, 'index.html'), join(dist, 'index.html'));
+for (const name of ['index.html', 'recording.html']) await copyFile(join(here, name), join(dist, name));

@@ -28,6 +28,11 @@ class Served:
     def __init__(self, face: Face, server: WebServer) -> None:
         self.face, self.server, self.sent = face, server, dict[int, FaceGeometry]()
 
+    @property
+    def stage(self) -> stage.Stage:
+        """What pages see of the face."""
+        return self.server._stages[self.face.model.name]
+
     def show(self, frame: Frame) -> None:
         """Keep what pages get."""
         self.sent[self.server._frame] = frame.geometry.copy()
@@ -56,9 +61,7 @@ def serving(name: str = "amber", **options: Any) -> Iterator[Served]:
         with WebServer(face, port=options.pop("port", 0), fps=_FPS, **options) as server:
             served = Served(face, server)
             loop = threading.Thread(
-                target=lambda: run(
-                    face, SystemClock(), [server], [server, served], fps=_FPS, stopped=ended.is_set
-                )
+                target=lambda: run(face, SystemClock(), [server], [server, served], fps=_FPS, stopped=ended.is_set)
             )
             loop.start()
             try:

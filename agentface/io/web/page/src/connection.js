@@ -48,6 +48,7 @@ export class Connection extends EventTarget {
     } catch {
       return;
     }
+    if (message === null || typeof message !== 'object') return;
     if (message.type === 'hello') {
       this.greeted(message);
       return;
@@ -84,8 +85,10 @@ export class Connection extends EventTarget {
       this.newest = buffer;
       this.received += 1;
       this.tell('frame');
-    } else if (kind === AUDIO && buffer.byteLength >= 16) {
-      this.tell('sound', readSound(buffer));
+    } else if (kind === AUDIO) {
+      const sound = readSound(buffer);
+      if (sound) this.tell('sound', sound);
+      else this.refused += 1;
     }
   }
 

@@ -13,7 +13,8 @@ const MAKES_CONNECTION = ['server', 'face', 'look', 'mode', 'token'];
 /**
  * Attributes: `server` (where agentface serves, the script's own place when missing), `face`, `look`, `camera`, `quality`,
  * `transparent`, `mode`, `token`, `src` (a recorded performance instead of a server), `muted`.
- * Events: `ready`, `connected`, `disconnected`, `spoken`, `status`, `error`, each with a `detail`; `ended` of a recording.
+ * Events: `ready`, `connected`, `disconnected`, `spoken`, `status`, `error`, each with a `detail`; of a recording `recorded`, when it can be
+ * played, and `ended`.
  */
 export class AgentFace extends HTMLElement {
   static observedAttributes = [...MAKES_STAGE, ...MAKES_CONNECTION, 'camera', 'src', 'muted'];
@@ -158,6 +159,7 @@ export class AgentFace extends HTMLElement {
         this.drawSoon();
       });
       this.player.addEventListener('ended', () => this.tell('ended'));
+      this.tell('recorded', { duration_s: recording.duration_s });
       if (this.hasAttribute('autoplay')) await this.play();
     } catch (error) {
       this.tell('error', { error: { where: 'src', expected: 'a recorded performance', got: String(error) } });
