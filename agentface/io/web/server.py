@@ -119,6 +119,8 @@ class WebServer:
 
     def close(self) -> None:
         """Stop serving; may be called twice."""
+        if self._server.should_exit:
+            return
         self._inbox.close()
         for voice in self._voices.values():
             voice.close()

@@ -61,7 +61,8 @@ def test_a_button_that_is_let_go_of_asks_nothing():
     ("name", "told"),
     [("emotion", {"emotion": "joy"}), ("emotion", {"emotion": "joy", "intensity": 2}), ("emotion", "joy"), ("say", {}),
      ("emotion", {"emotion": "joy", "intensity": 0.5, "loud": 1}), ("emotion", []), ("nothing", {}), (7, {}),
-     (None, []),      ("emotions", {"emotions": [1]}), ("arkit", {"weights": 3}), ("faps", {"faps": {"x": 1}}), ("bml", {"bml": 3}),
+     (None, []), ("emotions", {"emotions": [1]}), ("arkit", {"weights": 3}), ("faps", {"faps": {"x": 1}}),
+     ("bml", {"bml": 3}),
      ("visemes", {"phones": "aa"}), ("say", {"text": ["a"]}), ("state", {"state": {}}), ("gesture", {"name": [1]}),
      ("bml", {"bml": "<bml"}), ("muscle", {"name": {}, "contraction": 0.1}), ("hush", {"now": True})],
 )  # fmt: skip
