@@ -21,8 +21,8 @@ ELEMENT = "document.querySelector('agent-face')"
 DRAWN = f"{ELEMENT}?.drawn > 2"
 SHOWN = f"""
 () => {{
-  const {{ face }} = {ELEMENT};
-  return {{ frame: face.shown.frame, vertices: Array.from(face.skin.vertices), tongue: Array.from(face.parts.tongue.geometry.attributes.place.array) }};
+  const {{ skin, shown, parts }} = {ELEMENT}.face, {{ place }} = parts.tongue.geometry.attributes;
+  return {{ frame: shown.frame, vertices: Array.from(skin.vertices), tongue: Array.from(place.array) }};
 }}
 """
 

@@ -28,7 +28,8 @@ SCENE = """<!doctype html><title>scene</title>
     camera.position.set(0, 0, 8);
     scene.add(new THREE.HemisphereLight());
     const cube = (x, z) => {
-      const box = new THREE.Mesh(new THREE.BoxGeometry(0.6, 0.6, 0.6), new THREE.MeshBasicMaterial({ color: 0xff0000 }));
+      const red = new THREE.MeshBasicMaterial({ color: 0xff0000 });
+      const box = new THREE.Mesh(new THREE.BoxGeometry(0.6, 0.6, 0.6), red);
       box.position.set(x, 0, z);
       scene.add(box);
     };
