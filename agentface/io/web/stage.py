@@ -120,11 +120,6 @@ def basis_of(face: Face, deformer: str, told: Callable[[str], object] = lambda _
 
 def encode_head_file(model: HeadModel, look: str | None, basis: Basis) -> bytes:
     """The file of a head that the page of this package draws."""
-    try:
-        from agentface.io.web.head_file import encode_head
-    except ImportError:
-        from agentface.mesh.glb import MeshArrays, encode_glb
+    from agentface.io.web.head_file import encode_head
 
-        meshes = {"skin": MeshArrays(model.triangles, {"POSITION": model.vertices}), **model.parts}
-        return encode_glb(meshes, "")
     return encode_head(model, load_look(model, look), basis)
