@@ -77,7 +77,7 @@ class _Part:
         likely = np.sqrt((shapes / np.linalg.norm(shapes, axis=(1, 2), keepdims=True)) ** 2).sum(axis=(0, 2))
         if without is not None:
             likely[without] = 0.0
-        count = min(count, np.count_nonzero(likely))
+        count = min(count, int(np.count_nonzero(likely)))
         drawn = np.random.default_rng(_SEED).choice(len(rest), count, replace=False, p=likely / likely.sum())
         self.places = np.sort(drawn).astype(np.int32)
         self._rest = rest[self.places]
