@@ -48,7 +48,7 @@ class Asked:
 @click.option(
     "--shapes",
     type=click.Choice(["arkit", "exact"]),
-    help="Of a .glb: ARKit's 52 shapes, or those that are the performance's own. If not given, exact with a performance.",
+    help="Of a .glb: ARKit's 52, or the performance's own; if not given, these where there is a performance.",
 )
 @click.option(
     "--error-mm",

@@ -86,7 +86,6 @@ def test_every_shader_compiles(context):
         "strand": ["strand"],
         "skin": ["skin"],
         "skin_fast": ["skin_fast"],
-        "atlas": ["atlas"],
         "part": ["part"],
         "cloth": ["cloth"],
         "unwrap": ["unwrap"],

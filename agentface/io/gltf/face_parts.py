@@ -11,26 +11,22 @@ import numpy as np
 from agentface.conventions import SIDES, Doubles, Floats, Indices
 from agentface.deform.finish import neck
 from agentface.deform.geometry import FaceGeometry
-from agentface.head.look import HairLook, Look
+from agentface.head.look import Look
 from agentface.head.model import HeadModel
 from agentface.mesh.normals import vertex_normals
 from agentface.view.bake.flat import EYE_INSET
-from agentface.view.hair.brows import brow_hairs, lash_hairs
-from agentface.view.hair.cap import scalp_cap
-from agentface.view.hair.grown import grown_sheets, grown_strands, shade_on
+from agentface.view.dressing import dressed_skin, grown_hair, irregularities
 from agentface.view.hair.hair_mesh import hair_colours, hair_strips, hair_triangles, strand_mesh
-from agentface.view.hair.hairline import Hairline
+from agentface.view.hair.head_hair import GrownHair
 from agentface.view.hair.ribbons import Hairs
 from agentface.view.hair.sheets import LOCKS
 from agentface.view.parts.anchored import Anchored, eye_linings
 from agentface.view.parts.teeth import crown_places
-from agentface.view.skin.complexion import folds
 from agentface.view.skin.shirt import shirt, uncovered
 
 Rides: TypeAlias = Literal["skin", "head", "body", "eye_l", "eye_r"]
 """What turns a part: the head and, where it holds on to the neck, the body, as the skin; one of them; an eye."""
 PlacesAndNormals: TypeAlias = tuple[Floats, Floats]
-_SEED = 20
 _STRANDS = "fast"
 _CAP_AXIS = np.array([0.0, 0.75, -0.66])
 _CAP_REACH = np.radians(165.0)
@@ -79,21 +75,21 @@ def released(model: HeadModel, geometry: FaceGeometry) -> FaceGeometry:
 
 def face_parts(model: HeadModel, look: Look) -> list[FacePart]:
     """All meshes of a face: skin, teeth, tongue, eyes and their linings, brows, lashes, hair, shirt."""
-    parts = [
-        _skin(model, look),
+    grown = grown_hair(model, look)
+    return [
+        _skin(model, look, grown),
         *_mouth(model, look),
         *_eyes(model),
         *_linings(model),
-        *_small_hairs(model, look.hair),
+        *_small_hairs(model, look),
+        *(() if grown is None else _head_hair(model, grown)),
+        _shirt(model),
     ]
-    if look.hair.style != "none":
-        parts += _head_hair(model, look.hair)
-    return [*parts, _shirt(model)]
 
 
-def _skin(model: HeadModel, look: Look) -> FacePart:
+def _skin(model: HeadModel, look: Look, grown: GrownHair | None) -> FacePart:
     mouth = np.clip((model.material[:, 1] - 0.35) / 0.55, 0.0, 1.0)
-    light = folds(model)[:, 0] * (1.0 - shade_on(model, look.hair))
+    light = dressed_skin(model, look, grown)["ambient"][:, 0]
     light = (1.0 - _SHADED * (1.0 - light)) * (1.0 - _IN_MOUTH * mouth)
     return FacePart(
         "skin",
@@ -170,14 +166,11 @@ def _linings(model: HeadModel) -> list[FacePart]:
     return parts
 
 
-def _small_hairs(model: HeadModel, look: HairLook) -> list[FacePart]:
-    rng = np.random.default_rng(_SEED)
-    grown = {"brows": brow_hairs(model, model.normals, look, rng)}
-    if look.lash_length_mm:
-        grown["lashes"] = lash_hairs(model, model.normals, look, rng)
+def _small_hairs(model: HeadModel, look: Look) -> list[FacePart]:
+    chance = irregularities(model, look)
     return [
         FacePart(name, "hair", "head", hair_triangles(hairs), _on_skin(hairs), colours=hair_colours(hairs))
-        for name, hairs in grown.items()
+        for name, hairs in (("brows", chance.brows), ("lashes", chance.lashes))
         if len(hairs)
     ]
 
@@ -186,17 +179,16 @@ def _on_skin(hairs: Hairs) -> Callable[[FaceGeometry], PlacesAndNormals]:
     return lambda geometry: hair_strips(hairs, geometry.vertices, geometry.normals)
 
 
-def _head_hair(model: HeadModel, look: HairLook) -> list[FacePart]:
-    centre = np.array([0.0, 0.4 * model.landmarks.eye_separation, -0.012])
-    cap = scalp_cap(model, Hairline(model, look.hairline), look)
-    stays = np.float32(1.0) - neck.shares(model)
+def _head_hair(model: HeadModel, grown: GrownHair) -> list[FacePart]:
+    cap, centre = grown.cap(), grown.centre
+    stays = np.asarray(1.0 - neck.shares(model), np.float32)
     parts = [
         FacePart(
             "scalp", "scalp", "skin", cap.triangles, _riding(model, cap), uv=cap_places(cap.vertices, centre),
             stays=np.asarray(stays[cap.anchors].mean(axis=1), np.float32),
         )
     ]  # fmt: skip
-    strands = strand_mesh(grown_strands(model, look, _STRANDS), model.vertices, centre)
+    strands = strand_mesh(grown.strands(_STRANDS), model.vertices, centre)
     hold, facing = strands.anchors, strands.normals
     parts.append(
         FacePart(
@@ -204,8 +196,7 @@ def _head_hair(model: HeadModel, look: HairLook) -> list[FacePart]:
             colours=strands.colours, stays=stays[hold],
         )
     )  # fmt: skip
-    found = grown_sheets(model, look)
-    for number, sheet in enumerate(found[1] if found else ()):
+    for number, sheet in enumerate(grown.sheets):
         rows, triangles = sheet.mesh()
         still = rows[:, :3].copy(), rows[:, 6:9].copy()
         uv = rows[:, 9:11] / np.array([LOCKS, 1.0], np.float32)

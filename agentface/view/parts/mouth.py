@@ -10,10 +10,12 @@ from agentface.conventions import Floats
 from agentface.deform.geometry import FaceGeometry
 from agentface.head.model import HeadModel
 from agentface.head.ring_names import LipRing
-from agentface.view.parts.rigid import RigidPart
+from agentface.view.gl.drawn_mesh import DrawnMesh
+from agentface.view.parts.rigid import RigidPart, rigid_mesh
 from agentface.view.parts.teeth import crown_places
 
-_SHADED = 0.25  # of the light on the lower jaw, which the upper lip and the nose keep off
+PARTS = "teeth_upper", "teeth_lower", "tongue"
+SHADED = 0.25  # of the light on the lower jaw, which the upper lip and the nose keep off
 _COLUMNS = np.linspace(0.2, 0.8, 7)  # where the gap is looked at: parts of the way from corner to corner
 _PURSED = 0.1  # of the mouth's width at rest, by which it is narrower where it is all pursed
 _MIDDLE = len(_COLUMNS) // 2
@@ -24,7 +26,7 @@ class Mouth:
 
     def __init__(self, context: Any, program: Any, model: HeadModel) -> None:
         self._model, self._program = model, program
-        self._parts = {name: _part(context, program, model, name) for name in ("teeth_upper", "teeth_lower", "tongue")}
+        self._parts = {name: RigidPart(context, program, mouth_mesh(model, name)) for name in PARTS}
         ring = model.lips.rings[LipRing.LINING]
         self._corners = ring.upper[0], ring.upper[-1]
         touching = model.lips.rings[: LipRing.RED + 1]
@@ -40,7 +42,7 @@ class Mouth:
         """Draw it as ``geometry`` has it."""
         self._program["shaded"].value = 0.0
         self._parts["teeth_upper"].draw(geometry.head)
-        self._program["shaded"].value = _SHADED
+        self._program["shaded"].value = SHADED
         self._parts["tongue"].reshape(geometry.tongue)
         for name in ("teeth_lower", "tongue"):
             self._parts[name].draw(geometry.head @ geometry.jaw)
@@ -77,10 +79,11 @@ class Mouth:
         return float(np.maximum(upper - lower, 0.0) @ self._bow / (self._bow @ self._bow))
 
 
-def _part(context: Any, program: Any, model: HeadModel, name: str) -> RigidPart:
+def mouth_mesh(model: HeadModel, name: str) -> DrawnMesh:
+    """One of :data:`PARTS` for ``shaders/part.vert.glsl``."""
     mesh = model.parts[name]
     material = mesh.attributes["_MATERIAL"].astype(np.float32) / np.float32(255)
     material[:, 3] = 0.0
     positions = mesh.attributes["POSITION"]
     detail = crown_places(positions, mesh.triangles, material[:, 0])
-    return RigidPart(context, program, positions, mesh.triangles, material, detail)
+    return rigid_mesh(positions, mesh.triangles, material, detail)
