@@ -56,6 +56,7 @@ class FacePart:
         uv: ``(N, 2)`` texture coordinates as in glTF, or None.
         colours: ``(N, 3)`` linear 0..1, or None.
         stays: ``(N,)`` 0..1, for one that rides as the skin: how much of it does not turn with the head.
+        turning: whether its normals change enough to be seen.
     """
 
     name: str
@@ -66,6 +67,7 @@ class FacePart:
     uv: Floats | None = None
     colours: Floats | None = None
     stays: Floats | None = None
+    turning: bool = True
 
 
 def released(model: HeadModel, geometry: FaceGeometry) -> FaceGeometry:
@@ -183,10 +185,13 @@ def _linings(model: HeadModel) -> list[FacePart]:
 def _small_hairs(model: HeadModel, look: Look) -> list[FacePart]:
     chance = irregularities(model, look)
     return [
-        FacePart(name, "hair", "head", hair_triangles(hairs), _on_skin(hairs), colours=hair_colours(hairs))
+        FacePart(
+            name, "hair", "head", hair_triangles(hairs), _on_skin(hairs), colours=hair_colours(hairs, look.skin.tone),
+            turning=False,
+        )
         for name, hairs in (("brows", chance.brows), ("lashes", chance.lashes))
         if len(hairs)
-    ]
+    ]  # fmt: skip
 
 
 def _on_skin(hairs: Hairs) -> Callable[[FaceGeometry], PlacesAndNormals]:

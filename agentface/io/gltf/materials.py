@@ -19,7 +19,7 @@ from agentface.view.dressing import dressed_skin, grown_hair
 from agentface.view.gl.ownership import Ownership
 from agentface.view.skin.template import skin_template
 
-SKIN_SIDE, EYE_SIDE, HAIR_SIDE = 1024, 512, 1024
+SKIN_SIDE, EYE_SIDE, HAIR_SIDE, SCALP_SIDE = 1024, 512, 1024, 512
 _ROUGH = {"skin": 0.5, "eye": 0.08, "teeth": 0.2, "tongue": 0.35, "flesh": 0.45, "hair": 0.6, "hair_sheet": 0.5,
           "scalp": 0.75, "cloth": 0.9}  # fmt: skip
 _BOTH_SIDES = ("hair", "hair_sheet", "flesh")
@@ -84,8 +84,9 @@ def _scalp_picture(painter: FlatPainter, model: HeadModel, look: Look, parts: Se
     (uv,) = (part.uv for part in parts if part.material == "scalp")
     assert grown is not None, "there is hair on the scalp"  # noqa: S101 - for the type checker
     assert uv is not None, "the scalp has a picture"  # noqa: S101 - for the type checker
-    cap = grown.cap()
-    return painter.cap(look, grown, (uv, cap.vertices, cap.material[:, :1], cap.triangles), HAIR_SIDE)
+    # coils are seen themselves
+    cap, side = grown.cap(), HAIR_SIDE if grown.coils else SCALP_SIDE
+    return painter.cap(look, grown, (uv, cap.vertices, cap.material[:, :1], cap.triangles), side)
 
 
 def _material(name: str, look: Look, texture: int | None) -> dict[str, Any]:

@@ -29,7 +29,7 @@ from agentface.io.vrm.presets import (
 )
 from agentface.parameters import FacePose
 
-OFF_MM = 3.0
+OFF_MM = 4.0
 """mm: where lids or lips are farther than that from where the face has them, an emotion holds the other back."""
 NEUTRAL = "neutral"
 Told = Callable[[float], object]
