@@ -14,8 +14,10 @@ debian = if [ "$$(id -u)" = 0 ] && command -v apt-get >/dev/null; \
 	echo "    sudo apt-get install --no-install-recommends $(1)"; exit 1; fi
 
 # programs and libraries that the voices and tests need, and the Debian packages that bring them; as in tests/tools.py
-TOOLS := xvfb-run:xvfb xauth:xauth xdotool:xdotool xprop:x11-utils oscsend:liblo-tools oscdump:liblo-tools node:nodejs npm:npm flite:flite
+TOOLS := xvfb-run:xvfb xauth:xauth xdotool:xdotool xprop:x11-utils oscsend:liblo-tools oscdump:liblo-tools node:nodejs npm:npm flite:flite chromium:chromium
 LIBRARIES := libespeak-ng.so.1:libespeak-ng1
+# what only the tests that take minutes need
+soak: TOOLS += blender:blender
 
 .DEFAULT_GOAL := help
 .PHONY: help demo test lint quick soak matrix docs build clean opengl voice tools warm

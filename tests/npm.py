@@ -32,7 +32,12 @@ def node_modules(name: str, version: str, *beside: str) -> Path:
             fresh.mkdir()
             command = ["npm", "install", "--no-audit", "--no-fund", "--ignore-scripts", "--prefix", fresh]
             run = subprocess.run(
-                [*command, f"{name}@{version}", *beside], cwd=fresh, capture_output=True, text=True, timeout=200, check=False
+                [*command, f"{name}@{version}", *beside],
+                cwd=fresh,
+                capture_output=True,
+                text=True,
+                timeout=200,
+                check=False,
             )
             if run.returncode:
                 pytest.skip(f"npm could not fetch {name} {version}: {run.stderr}")

@@ -24,6 +24,8 @@ PACKAGES = {
     "node": "nodejs",
     "npm": "npm",
     "flite": "flite",
+    "chromium": "chromium",
+    "blender": "blender",
 }
 """The Debian packages in which the programs are; the Makefile installs them."""
 LIBRARIES = {"libespeak-ng.so.1": "libespeak-ng1"}

@@ -2,7 +2,7 @@
 import * as THREE from "three";
 import { GLTFLoader } from "three/addons/loaders/GLTFLoader.js";
 import { RoomEnvironment } from "three/addons/environments/RoomEnvironment.js";
-import { VRMLoaderPlugin, VRMUtils } from "@pixiv/three-vrm";
+import { VRMLoaderPlugin, VRMMetaLoaderPlugin } from "@pixiv/three-vrm";
 
 const renderer = new THREE.WebGLRenderer({ antialias: true, preserveDrawingBuffer: true });
 renderer.setSize(innerWidth, innerHeight);
@@ -26,7 +26,7 @@ function named(name) {
 // Loads a file, and tells what it is made of.
 window.load = async (url) => {
   const loader = new GLTFLoader();
-  loader.register((parser) => new VRMLoaderPlugin(parser));
+  loader.register((parser) => new VRMLoaderPlugin(parser, { metaPlugin: new VRMMetaLoaderPlugin(parser, { needThumbnailImage: true }) }));
   if (loaded) scene.remove(loaded.scene);
   loaded = await loader.loadAsync(url);
   vrm = loaded.userData.vrm;
@@ -55,7 +55,7 @@ window.shape = (weights) => {
 
 window.seek = (time) => mixer.setTime(time);
 
-window.turn = (name, x, y, z) => named(name).rotation.set(x, y, z);
+window.scene_of = named;
 
 // Poses an avatar: expressions, the point that it looks at, and bones by their angles.
 window.pose = ({ expressions = {}, gaze = null, bones = {} }) => {
