@@ -52,6 +52,7 @@ class Drawing:
         """3 for red, green and blue, 4 with alpha."""
         return 4 if self.background == TRANSPARENT else 3
 
+
 class Painter:
     """Draws one face in the thread that makes its first picture.
 
