@@ -34,6 +34,7 @@ if TYPE_CHECKING:
     from agentface.face import Face
     from agentface.io.osc.server import OscServer
     from agentface.io.web.server import WebServer
+    from agentface.live.loop import Sink, Source
 
 _WEB = "Serve a page with the face, such as 127.0.0.1:8080; needs the extra web."
 _RECORD = "Film the face; a name like face-%05d.png gives numbered transparent pictures instead."
@@ -292,7 +293,8 @@ def _film_now(
     face, last_s = _only(faces), duration if math.isfinite(duration) else None
     with LiveSound(face, SOUND_HZ) as sound, LiveSink(lambda: shot.open(face.model, last_s, sound)) as film:
         _announce(faces, server, links)
-        sources, sinks = [server, *links.sources], [sound, film, *links.sinks]
+        sources: list[Source] = [server, *links.sources]
+        sinks: list[Sink] = [sound, film, *links.sinks]
         frames = run(face, SystemClock(), sources, sinks, fps=shot.fps, duration=duration, stopped=ending.told)
     if film.dropped:
         lost = f"{film.dropped} of {frames} frames are left out, as this machine draws too slowly for them"
