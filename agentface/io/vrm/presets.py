@@ -9,18 +9,20 @@ import math
 
 import numpy as np
 
-from agentface.agents.faces import default_faces
+from agentface.emotion.state import EmotionState
 from agentface.face import Face
 from agentface.head.model import HeadModel
 from agentface.parameters import NEUTRAL, FacePose, indices_of
 from agentface.requests import SetEmotions
 from agentface.speech.visemes import viseme_table
+from agentface.vrm.expressions import expression_table
 
-EMOTIONS = ("happy", "angry", "sad", "relaxed", "surprised")
-VISEMES = {"aa": "aa", "ih": "ih", "ou": "ou", "ee": "E", "oh": "oh"}
+_TABLE = expression_table()
+EMOTIONS = tuple(name for name, row in _TABLE.items() if row.emotions)
+VISEMES = {name: row.viseme for name, row in _TABLE.items() if row.viseme is not None}
 """VRM's mouth shapes and the visemes that they are."""
-BLINKS = {"blink": "", "blinkLeft": "_l", "blinkRight": "_r"}
-LOOKS = {"lookUp": (0.0, 1.0), "lookDown": (0.0, -1.0), "lookLeft": (1.0, 0.0), "lookRight": (-1.0, 0.0)}
+BLINKS = {name: "" if len(row.closes) > 1 else f"_{row.closes[0][0]}" for name, row in _TABLE.items() if row.closes}
+LOOKS = {name: row.looks for name, row in _TABLE.items() if row.looks is not None}
 """Parts of the way to the left edge and to the upper edge of the eye's hole."""
 _LIDS = "orbicularis_oculi_palpebralis"
 
@@ -28,7 +30,7 @@ _LIDS = "orbicularis_oculi_palpebralis"
 def emotion_pose(face: Face, name: str) -> FacePose:
     """What ``face`` shows of an emotion by VRM's name, and of nothing else."""
     face.neutral(0.0)
-    face.apply(SetEmotions(default_faces()[name], 0.0))
+    face.apply(SetEmotions(EmotionState.of(_TABLE[name].emotions), 0.0))
     face.step(0.0)
     return face.pose
 
