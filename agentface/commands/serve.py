@@ -109,35 +109,24 @@ def serve(
     agentface serve --face amber --id left --face onyx --id right
     agentface serve --vmc 127.0.0.1:39539 --vmc-in 127.0.0.1:39540
     """  # noqa: D301 - \b is click's mark of lines to keep
-    _check_options(
-        given(ctx),
-        window=view == "window",
-        record=record is not None,
-        several=len(names) > 1,
-        web=web is not None,
-    )
+    window, several = view == "window", len(names) > 1
+    _check_options(given(ctx), window=window, record=record is not None, several=several, web=web is not None)
     _check_ids(names, ids)
     check_vmc(given(ctx), vmc)
     from agentface.io.osc.server import OscServer
 
-    made = [
-        make_face(name, deformer, look=look, running=True, liveliness=liveliness, seed=seed)
-        for seed, name in enumerate(names)
-    ]
-    faces = vmc.first(_by_id(made, ids))
-    name = next(iter(faces))
-    rate = fps or (30.0 if record else 60.0)
+    faces = vmc.first(_made(names, ids, deformer, look, liveliness))
+    name, rate, end = next(iter(faces)), fps or (30.0 if record else 60.0), duration or math.inf
     with (
         until_told() as ending,
-        OscServer(faces if ids or len(made) > 1 else made[0], *osc) as server,
+        OscServer(faces if ids or several else faces[name], *osc) as server,
         vmc_links(name, faces[name], vmc) as links,
         _heard(faces),
         _in_pages(faces, web, token, origins, deformer, look, rate) as pages,
     ):
-        if view == "window":
+        if window:
             _in_a_window(server, links, faces, ending, look, quality, camera)
             return
-        end = duration or math.inf
         if record is None:
             _run(server, links, faces, ending, rate, end, pages)
             return
@@ -189,6 +178,17 @@ def _check_apart(ids: Sequence[str]) -> None:
     twice = next((name for name in ids if ids.count(name) > 1), None)
     if twice is not None:
         raise click.UsageError(f"expected each id once, got {twice!r} twice; give each --face an --id of its own")
+
+
+def _made(
+    names: Sequence[str], ids: Sequence[str], deformer: str, look: str | None, liveliness: float
+) -> dict[str, Face]:
+    """The faces by their ids."""
+    made = [
+        make_face(name, deformer, look=look, running=True, liveliness=liveliness, seed=seed)
+        for seed, name in enumerate(names)
+    ]
+    return _by_id(made, ids)
 
 
 def _by_id(faces: Sequence[Face], ids: Sequence[str]) -> dict[str, Face]:
