@@ -27,7 +27,7 @@ from agentface.io.web.page_files import FOLDER
 from agentface.io.web.stage import Stage
 from agentface.requests import Request
 
-OPEN_PATHS = frozenset({"/", "/agentface.js", "/licences.txt", "/favicon.ico"})
+_ICON = "/favicon.ico"
 LARGEST_MESSAGE = 64 * 1024
 """Bytes of one message of a page."""
 _MESSAGES_AT_ONCE, _MESSAGES_A_SECOND = 480.0, 240.0
@@ -57,7 +57,7 @@ class WebFaces:
         return Starlette(
             routes=[
                 Route("/", _page),
-                Route("/favicon.ico", lambda _: Response(status_code=204)),
+                Route(_ICON, lambda _: Response(status_code=204)),
                 Route("/{file}.js", _page),
                 Route("/licences.txt", _page),
                 Route("/openapi.json", lambda _: JSONResponse(openapi())),
@@ -182,6 +182,11 @@ class WebFaces:
         except AgentFaceError as error:
             return _error(told, error)
         return json.dumps({"type": "done", **_id(told)})
+
+
+def open_paths() -> frozenset[str]:
+    """What needs no token: the page and its programs, which are no secret."""
+    return frozenset({"/", _ICON, *(f"/{file.name}" for file in FOLDER.glob("*"))})
 
 
 def _apply(stage: Stage, request: Request | None) -> None:

@@ -137,11 +137,11 @@ class WebServer:
         self.close()
 
     def _config(self, uvicorn: Any) -> Any:
-        from agentface.io.web.app import LARGEST_MESSAGE, OPEN_PATHS, WebFaces
+        from agentface.io.web.app import LARGEST_MESSAGE, WebFaces, open_paths
 
         faces = WebFaces(self._stages, self._hub, self._inbox, self._clock)
         faces.joined = self._catch_up
-        app = guarded(faces.app(), self.access, open_paths=OPEN_PATHS, clock=self._clock)
+        app = guarded(faces.app(), self.access, open_paths=open_paths(), clock=self._clock)
         return uvicorn.Config(
             app,
             log_config=None,
