@@ -27,7 +27,7 @@ class Served:
         self.face, self.server, self.sent = face, server, dict[int, FaceGeometry]()
 
     @property
-    def stage(self) -> stage.Stage:
+    def stage(self) -> stage.FaceStage:
         """What pages see of the face."""
         return self.server._stages[self.face.model.name]
 
