@@ -19,6 +19,7 @@ COMMANDS = (
     "play",
     "say",
     "convert",
+    "export",
     "explain",
     "check",
     "unwrap",

@@ -90,7 +90,7 @@ def told_to_a_face(*arguments: object, refused: str = "", slow: int = 1) -> tupl
     speaks = 0
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as face, ThreadPoolExecutor() as pool:
         face.bind(("127.0.0.1", 0))
-        face.settimeout(60)
+        face.settimeout(200)
         said = pool.submit(run, *agent, f"127.0.0.1:{face.getsockname()[1]}")
         waiting = [face.recvfrom(8192) for _ in range(slow)]
         while not said.done():

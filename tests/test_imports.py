@@ -27,7 +27,7 @@ LAYERS = (
     ("arkit", "bml"),
     ("requests",),
     ("view", "talk"),
-    ("events",),
+    ("events", "calls"),
     ("face",),
     ("live", "agents"),
     ("io",),

@@ -21,9 +21,9 @@ from agentface.commands.options import (
     liveliness_option,
     look_option,
     make_face,
-    optional_address,
     size_option,
 )
+from agentface.commands.pages import PagesAsked, served_pages, web_options
 from agentface.commands.streams import say, tell
 from agentface.resources import DEFAULT_FACE
 
@@ -34,7 +34,6 @@ if TYPE_CHECKING:
     from agentface.io.osc.server import OscServer
     from agentface.io.web.server import WebServer
 
-_WEB = "Serve a page with the face, such as 127.0.0.1:8080; needs the extra web."
 _RECORD = "Film the face; a name like face-%05d.png gives numbered transparent pictures instead."
 
 
@@ -42,13 +41,7 @@ _RECORD = "Film the face; a name like face-%05d.png gives numbered transparent p
 @click.option(
     "--osc", default="127.0.0.1:7400", callback=address, metavar="HOST:PORT", show_default=True, help="Where to listen."
 )
-@click.option("--web", callback=optional_address, metavar="HOST:PORT", help=_WEB)
-@click.option(
-    "--token", metavar="TOKEN", help="What --web asks of everyone; beyond this machine one is made if not given."
-)
-@click.option(
-    "--allow-origin", "origins", multiple=True, metavar="URL", help="A web site whose pages may ask --web, too."
-)
+@web_options
 @click.option("--view", type=click.Choice(["window", "none"]), default="none", show_default=True)
 @click.option("--record", type=click.Path(path_type=Path), metavar="FILE.mp4", help=_RECORD)
 @click.option(
@@ -79,9 +72,7 @@ def serve(
     ctx: click.Context,
     *,
     osc: tuple[str, int],
-    web: tuple[str, int] | None,
-    token: str | None,
-    origins: tuple[str, ...],
+    pages: PagesAsked | None,
     view: str,
     record: Path | None,
     every_frame: bool,
@@ -109,7 +100,7 @@ def serve(
         window=view == "window",
         record=record is not None,
         several=len(names) > 1,
-        web=web is not None,
+        web=pages is not None,
     )
     _check_ids(names, ids)
     from agentface.io.osc.server import OscServer
@@ -124,21 +115,21 @@ def serve(
         until_told() as ending,
         OscServer(faces if ids or len(made) > 1 else made[0], *osc) as server,
         _heard(faces),
-        _in_pages(faces, web, token, origins, deformer, look, rate) as pages,
+        served_pages(faces, pages, deformer, look, rate) as servers,
     ):
         if view == "window":
-            _in_a_window(server, faces, ending, look, quality, camera)
+            _in_a_window(server, faces, ending, look, quality, camera, servers)
             return
         end = duration or math.inf
         if record is None:
-            _run(server, faces, ending, rate, end, pages)
+            _run(server, faces, ending, rate, end, servers)
             return
         shot = Shot(record, size, camera, quality or "fast", rate, look, live=True)
         if every_frame:
             again = make_face(names[0], deformer, look=look, liveliness=liveliness)
-            _film_later(server, faces, ending, shot, end, again)
+            _film_later(server, faces, ending, shot, end, again, servers)
         else:
-            _film_now(server, faces, ending, shot, end)
+            _film_now(server, faces, ending, shot, end, servers)
 
 
 def _check_options(names: set[str], *, window: bool, record: bool, several: bool, web: bool) -> None:
@@ -153,8 +144,6 @@ def _check_options(names: set[str], *, window: bool, record: bool, several: bool
         ("every_frame", "--record", record),
         ("size", "--record", record),
         ("look", "--view window, --record or --web", window or record or web),
-        ("web", "--view none", not window),
-        ("web", "no --record", not record),
         ("token", "--web", web),
         ("origins", "--web", web),
         ("quality", "--view window or --record", window or record),
@@ -221,31 +210,7 @@ def _in_a_window(
 
     window = make_window(_only(faces), look=look, quality=quality, camera=camera)
     _announce(faces, server)
-    window.run([server], stopped=ending.told)
-
-
-@contextmanager
-def _in_pages(
-    faces: Mapping[str, Face],
-    web: tuple[str, int] | None,
-    token: str | None,
-    origins: Sequence[str],
-    deformer: str,
-    look: str | None,
-    fps: float,
-) -> Iterator[list[WebServer]]:
-    """A server of pages, if one is asked for."""
-    if web is None:
-        yield []
-        return
-    from agentface.io.web.server import WebServer
-
-    with WebServer(
-        faces, *web, token=token, origins=origins, deformer=deformer, look=look, fps=fps, told=tell
-    ) as server:
-        for line in (f"the page is {server.url}", *server.access.told("it")):
-            say(line)
-        yield [server]
+    window.run([server, *pages], stopped=ending.told)
 
 
 def _run(

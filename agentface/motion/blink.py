@@ -36,9 +36,9 @@ class BlinkChannel:
 
     names = (*_CLOSER, *_LEVATOR)
 
-    def __init__(self) -> None:
+    def __init__(self, *, compiled: bool = False) -> None:
         self.lags_s: tuple[float, ...] = (0.0,) * len(SIDES)
-        self._closure = Envelope(len(SIDES))
+        self._closure = Envelope(len(SIDES), compiled=compiled)
         self._now = 0.0
         self._asked: list[tuple[float, int, BlinkShape]] = []
         self._open_at = [math.inf] * len(SIDES)

@@ -37,7 +37,7 @@ class Desk:
 
     def run(self, seconds):
         for face in self.made:
-            face._advance(seconds)
+            face._agendas.advance(seconds, face.channels.advance)
 
     def told(self, sender=ME):
         return [(each.address, *each.arguments) for to, each in self.answers if to == sender]
@@ -116,12 +116,12 @@ def test_a_real_client_hears_of_its_block():
         OscServer(face, port=0) as server,
         socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as client,
     ):
-        client.settimeout(20)
+        client.settimeout(200)
         client.sendto(builder.build().dgram, ("127.0.0.1", server.port))
         while not face.blocks.blocks:
             server.take_in()
             time.sleep(0.001)
-        face._advance(2.0)
+        face._agendas.advance(2.0, face.channels.advance)
         while not heard or heard[-1][1] != "end":
             heard.append(OscMessage(client.recv(4096)).params)
     assert [what for _, what, _ in heard[1:]] == ["start", "w:start", "w:end", "end"]

@@ -4,7 +4,6 @@ import errno
 import json
 import socket
 import threading
-import time
 
 import pytest
 from osc_bytes import message
@@ -15,6 +14,7 @@ from agentface.io.osc import server as server_module
 from agentface.io.osc.codec import decode
 from agentface.io.osc.server import MOST_WAITING, OscServer
 from tests.heads import head_model
+from tests.waiting import until
 
 
 @pytest.fixture(scope="module")
@@ -47,23 +47,18 @@ def step(server):
         face.step(0.01)
 
 
-def hear(server, client, seconds=10.0):
+def hear(server, client):
     """The next answer, while the face is stepped."""
-    end = time.monotonic() + seconds
-    while time.monotonic() < end:
+    while True:
         step(server)
         try:
             return decode(client.recv(65536))[0]
         except TimeoutError:
             continue
-    raise AssertionError("no answer")
 
 
-def wait_for(condition, server, seconds=10.0):
-    end = time.monotonic() + seconds
-    while not condition():
-        assert time.monotonic() < end
-        step(server)
+def wait_for(condition, server):
+    until(condition, lambda: step(server))
 
 
 def test_a_message_over_a_socket_and_the_status(server, client):
@@ -93,21 +88,23 @@ def test_a_flood_leaves_the_newest_state_and_no_queue(face, server, client):
         if number % 500 == 0:
             step(server)
             assert len(server._waiting) <= MOST_WAITING
-    # The system drops what comes faster than it is read; the sender's last word comes when the flood is over.
-    wait_for(lambda: not server._waiting, server)
-    client.send(message("/agentface/emotion", "sf", "joy", 0.25))
-    wait_for(lambda: face.emotion == EmotionState.of(happiness=0.25), server)
+
+    def last_word():  # repeated: the system drops what comes faster than it is read
+        client.send(message("/agentface/emotion", "sf", "joy", 0.25))
+        step(server)
+
+    until(lambda: face.emotion == EmotionState.of(happiness=0.25), last_word)
     step(server)
-    assert not server._waiting
+    wait_for(lambda: not server._waiting, server)
     assert face.message_counts.errors == {"malformed": 0, "unknown": 0, "rejected": 0}
 
 
 def test_without_steps_the_oldest_are_dropped(face, server, client):
     for number in range(3 * MOST_WAITING):
-        client.send(message("/agentface/emotion", "sf", "joy", number / (3 * MOST_WAITING)))
-        while number % 64 == 63 and len(server._waiting) < min(number, MOST_WAITING) - 63:
-            time.sleep(0.001)
-    time.sleep(0.2)
+        packet = message("/agentface/emotion", "sf", "joy", number / (3 * MOST_WAITING))
+        client.send(packet)
+        if number % 64 == 63:  # no more at once than the system keeps
+            until(lambda: server._waiting and server._waiting[-1][0] == packet)  # noqa: B023 - done before it changes
     assert len(server._waiting) == MOST_WAITING
     step(server)
     assert face.emotion["happiness"] > 0.9
@@ -185,11 +182,15 @@ def test_what_the_system_refuses_is_blamed_on_nobody_else():
 
 
 def test_closing_frees_the_port_and_the_thread(face):
-    threads = threading.active_count()
+    def listening():
+        return [thread for thread in threading.enumerate() if thread.name == "agentface-osc"]
+
+    before = listening()
     server = OscServer(face, port=0)
+    assert len(listening()) == len(before) + 2
     server.close()
     server.close()
-    assert threading.active_count() == threads
+    assert listening() == before
     OscServer(face, port=server.port).close()
 
 

@@ -31,7 +31,7 @@ def issues(*files: Path) -> dict[str, list[str]]:
     tools.require("node")
     environment = os.environ | {"NODE_PATH": str(node_modules("gltf-validator", VALIDATOR))}
     command = ["node", Path(__file__).with_name("validate_glb.js"), *files]
-    run = subprocess.run(command, env=environment, capture_output=True, text=True, timeout=120, check=False)
+    run = subprocess.run(command, env=environment, capture_output=True, text=True, timeout=240, check=False)
     assert run.returncode == 0, run.stderr
     found: dict[str, list[str]] = json.loads(run.stdout)
     assert list(found) == [str(file) for file in files]
@@ -196,5 +196,5 @@ def test_writing_needs_no_library():
         "import sys; from agentface.mesh.glb import encode_glb, read_glb; from agentface.resources import face_folder; "
         "encode_glb(read_glb(face_folder('amber') / 'head.glb'), ''); print(*sys.modules)"
     )
-    run = subprocess.run([sys.executable, "-c", program], check=True, capture_output=True, text=True, timeout=60)
+    run = subprocess.run([sys.executable, "-c", program], check=True, capture_output=True, text=True, timeout=240)
     assert "pygltflib" not in run.stdout.split()

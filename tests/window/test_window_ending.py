@@ -44,7 +44,7 @@ def test_the_film_of_a_window_that_ends(tmp_path, command, end, code):
     script = FILMING.replace("$COMMAND", command).replace("$END", end)
     done = subprocess.run(
         [*on_a_virtual_display(), "sh", "-c", script, sys.executable],
-        check=False, capture_output=True, text=True, timeout=120, cwd=tmp_path, env=os.environ | {"DISPLAY": ""},
+        check=False, capture_output=True, text=True, timeout=240, cwd=tmp_path, env=os.environ | {"DISPLAY": ""},
     )  # fmt: skip
     assert f"code {code}" in done.stdout, done.stdout + done.stderr
     (path,) = tmp_path.glob("*.mp4")

@@ -37,7 +37,7 @@ _AT_PARTING, _RISE = 0.25, 0.045
 """How high hair lies where it starts, as a part of its thickness, and the metres over which it rises from there."""
 _EDGE_SHADE, _EDGE_REACH = 0.6, 0.011
 """How much light the front edge keeps off the skin below it, and within how many metres."""
-_LOCKS = 13
+LOCKS = 13
 _WIDTHS = 0.3, 1.7
 """Of the spaces between columns, in locks, as parts of their mean."""
 _RIDGE, _UNEVEN = 0.0016, 0.05
@@ -153,9 +153,9 @@ def _sheet(
     hull: Hull, look: HairLook, paths: Doubles, thickness: float, layer: float, rng: np.random.Generator
 ) -> Sheet:
     widths = rng.uniform(*_WIDTHS, len(paths) - 1)
-    across = np.concatenate([[0.0], np.cumsum(widths)]) * _LOCKS / widths.sum()
+    across = np.concatenate([[0.0], np.cumsum(widths)]) * LOCKS / widths.sum()
     t = np.linspace(0.0, 1.0, _ROWS) ** 1.3 if layer == 1.0 else np.linspace(_INNER_FROM, 1.0, _INNER_ROWS)
-    uneven = np.interp(across, np.arange(_LOCKS + 1), rng.uniform(0.0, 1.0, _LOCKS + 1))
+    uneven = np.interp(across, np.arange(LOCKS + 1), rng.uniform(0.0, 1.0, LOCKS + 1))
     points, along = _resampled(paths, t, (1.0 - _UNEVEN * uneven) * (0.94 + 0.06 * layer))
     ridge = np.sin(np.pi * (across % 1.0))[:, None] - 0.5
     tucked = _TUCKED + (1.0 - _TUCKED) * smoothstep(0.0, 1.5, across)[:, None]

@@ -12,7 +12,7 @@ from agentface.deform.geometry import FaceGeometry
 from agentface.face import Face
 from agentface.io.web.basis import Basis, make_basis
 from agentface.io.web.server import WebServer
-from agentface.io.web.stage import Stage
+from agentface.io.web.stage import FaceStage
 from agentface.live.loop import Frame, Sink, run
 
 _SAMPLES = 120, 40
@@ -27,7 +27,7 @@ class Served:
         self.face, self.server, self.sent = face, server, dict[int, FaceGeometry]()
 
     @property
-    def stage(self) -> Stage:
+    def stage(self) -> FaceStage:
         """What pages see of the face."""
         return self.server._stages[self.face.model.name]
 
