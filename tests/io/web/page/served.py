@@ -10,12 +10,12 @@ from typing import Any
 from agentface.clock import SystemClock
 from agentface.deform.geometry import FaceGeometry
 from agentface.face import Face
-from agentface.io.web import stage
 from agentface.io.web.basis import Basis, make_basis
 from agentface.io.web.server import WebServer
-from agentface.live.loop import Frame, run
+from agentface.io.web.stage import FaceStage
+from agentface.live.loop import Frame, Sink, run
 
-_SAMPLES = 90, 60
+_SAMPLES = 120, 40
 _FPS = 20.0
 _KEPT = 200
 
@@ -27,7 +27,7 @@ class Served:
         self.face, self.server, self.sent = face, server, dict[int, FaceGeometry]()
 
     @property
-    def stage(self) -> stage.FaceStage:
+    def stage(self) -> FaceStage:
         """What pages see of the face."""
         return self.server._stages[self.face.model.name]
 
@@ -39,7 +39,6 @@ class Served:
 
 def rough_basis(face: Face, deformer: str, _: Any = None) -> Basis:
     """As :func:`agentface.io.web.stage.basis_of`, of few samples."""
-
     made: Basis = face.model.derived(f"tests.web.basis.{deformer}", lambda model: make_basis(model, deformer, _SAMPLES))
     return made
 
@@ -49,10 +48,12 @@ def serving(name: str = "amber", **options: Any) -> Iterator[Served]:
     """A served face, at rest until it is asked for something."""
     face = Face(name)
     ended = threading.Event()
-    with WebServer(face, port=options.pop("port", 0), fps=_FPS, measure=rough_basis, **options) as server:
+    options = {"port": 0, "fps": _FPS, "measure": rough_basis, **options}
+    with WebServer(face, **options) as server:
         served = Served(face, server)
+        sinks: list[Sink] = [server, served]
         loop = threading.Thread(
-            target=lambda: run(face, SystemClock(), [server], [server, served], fps=_FPS, stopped=ended.is_set)
+            target=lambda: run(face, SystemClock(), [server], sinks, fps=_FPS, stopped=ended.is_set)
         )
         loop.start()
         try:
