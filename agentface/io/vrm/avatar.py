@@ -21,7 +21,7 @@ from agentface.io.gltf.figure import Figure, Joints
 from agentface.io.gltf.materials import add_materials
 from agentface.io.gltf.writer import GltfWriter
 from agentface.io.picture import encode
-from agentface.io.vrm.expressions import Expression, ExpressionBaker, Told
+from agentface.io.vrm.expressions import BakedExpression, ExpressionBaker, Told
 from agentface.io.vrm.licence import meta_of
 from agentface.io.vrm.skeleton import EYE_BONES, add_bones
 from agentface.view.renderer import Renderer
@@ -74,7 +74,7 @@ def encode_avatar(face: Face, look: Look, deformer: Deformer, told: Told = lambd
 
 
 def _expressions(
-    expressions: Mapping[str, Expression], binds: Mapping[str, list[dict[str, Any]]]
+    expressions: Mapping[str, BakedExpression], binds: Mapping[str, list[dict[str, Any]]]
 ) -> dict[str, dict[str, Any]]:
     found: dict[str, dict[str, Any]] = {"preset": {}, "custom": {}}
     for name, expression in expressions.items():

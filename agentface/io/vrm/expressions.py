@@ -36,7 +36,7 @@ Told = Callable[[float], object]
 
 
 @dataclass(frozen=True)
-class Expression:
+class BakedExpression:
     """One expression.
 
     Attributes:
@@ -65,25 +65,25 @@ class ExpressionBaker:
         self._eyes = {part.name: part for part in parts if part.rides in ("eye_l", "eye_r")}
         self._lids, self._lips = lid_vertices(face.model), lip_vertices(face.model)
 
-    def baked(self, told: Told = lambda _: None) -> dict[str, Expression]:
+    def baked(self, told: Told = lambda _: None) -> dict[str, BakedExpression]:
         """VRM's eighteen presets, and ARKit's 52 as custom ones; ``told`` gets how many are done."""
         emotions = {name: emotion_pose(self._face, name) for name in EMOTIONS}
         visemes = {name: viseme_pose(name) for name in VISEMES}
         blinks = {name: blink_pose(name) for name in BLINKS}
-        found = {NEUTRAL: Expression({})}
+        found = {NEUTRAL: BakedExpression({})}
         for name, pose in (emotions | visemes | blinks).items():
             overrides: tuple[str, ...] = ()
             if name in emotions:
                 overrides = self._overrides(pose, list(visemes.values()), list(blinks.values()))
-            found[name] = Expression(self._surface.targets(self._shown(pose)), overrides)
+            found[name] = BakedExpression(self._surface.targets(self._shown(pose)), overrides)
             told(len(found))
         for name in LOOKS:
             shown = self._shown(look_pose(self._model, name))
-            found[name] = Expression(self._surface.targets(shown) | self._turned_eyes(shown))
+            found[name] = BakedExpression(self._surface.targets(shown) | self._turned_eyes(shown))
             told(len(found))
         presets = len(found)
         shapes, _ = bake_arkit(self._model, self._deformer, self._surface, lambda done: told(presets + done))
-        return found | {name: Expression(targets, custom=True) for name, targets in shapes.items()}
+        return found | {name: BakedExpression(targets, custom=True) for name, targets in shapes.items()}
 
     def _shown(self, pose: FacePose) -> FaceGeometry:
         return released(self._model, self._deformer.at(pose))
