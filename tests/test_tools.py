@@ -31,7 +31,7 @@ def verdict(folder: Path, program: str, required: str) -> tuple[int, str]:
     command = [sys.executable, "-m", "pytest", "-p", "tests.tools", "-p", "no:cacheprovider", "-rA", str(folder)]
     command += ["-c", "/dev/null", "--rootdir", str(folder)]
     environment = os.environ | {"AGENTFACE_REQUIRE_TOOLS": required}
-    done = subprocess.run(command, check=False, capture_output=True, text=True, timeout=120, env=environment, cwd=ROOT)
+    done = subprocess.run(command, check=False, capture_output=True, text=True, timeout=240, env=environment, cwd=ROOT)
     return done.returncode, done.stdout
 
 

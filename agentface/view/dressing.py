@@ -7,14 +7,14 @@ from typing import NamedTuple
 import numpy as np
 
 from agentface.cache import stamp_of
-from agentface.conventions import Bytes, Floats
-from agentface.head.look import Look
+from agentface.conventions import Bytes, Doubles, Floats
+from agentface.head.look import HairLook, Look
 from agentface.head.model import HeadModel
 from agentface.head.skin_image import skin_image
 from agentface.view.gl.noise import noise_volume
 from agentface.view.hair.brows import BrowLine, brow_hairs, lash_hairs
+from agentface.view.hair.grown import GrownHair
 from agentface.view.hair.hairline import Hairline, hair_shade, hidden
-from agentface.view.hair.head_hair import GrownHair
 from agentface.view.hair.ribbons import Hairs
 from agentface.view.skin.complexion import complexion, folds
 from agentface.view.skin.fine_lips import FineLips
@@ -25,6 +25,7 @@ from agentface.view.skin.wrinkle_patches import Relief
 SOFTNESSES = 0.35, 0.1
 """Of brows and lashes: how they shine."""
 _SEED = 20
+_BROW_TINT = 0.55
 _LIP_CUTS = 2
 
 
@@ -66,17 +67,25 @@ def grown_hair(model: HeadModel, look: Look) -> GrownHair | None:
 
 def dressed_skin(model: HeadModel, look: Look, grown: GrownHair | None) -> dict[str, Floats]:
     """What the look makes of the skin's vertices: ``(V, 1..4)`` by the names of ``shaders/skin_place.glsl``."""
-    hair = look.hair
-    covered = 0.55 * hair.brow_density * BrowLine(model).density(model.vertices)
-    if hair.style != "none":
-        covered = np.maximum(covered, hidden(model, Hairline(model, hair.hairline), hair))
-    shade = hair_shade(model, hair)
-    if grown is not None:
-        shade = np.maximum(shade, grown.shade(model.vertices))
+    ambient = folds(model) * (1 - _shade(model, look.hair, grown)[:, None])
     dressed = {
-        "complexion": complexion(model, np.asarray(np.clip(covered, 0, 1), np.float32), look.skin.stubble),
-        "ambient": (folds(model) * (1 - shade[:, None])).astype(np.float32),
+        "complexion": complexion(model, _covered(model, look.hair), look.skin.stubble),
+        "ambient": ambient.astype(np.float32),
     }
     if skin_image(look, 1) is not None:
         dressed["picture"] = np.column_stack([model.uv, model.uv_cover])
     return dressed
+
+
+def _covered(model: HeadModel, look: HairLook) -> Floats:
+    """``(V,)`` 0..1: how much of the skin's colour is that of the hair on it, brows among it."""
+    tint = _BROW_TINT * look.brow_density * BrowLine(model).density(model.vertices)
+    if look.style != "none":
+        tint = np.maximum(tint, hidden(model, Hairline(model, look.hairline), look))
+    return np.asarray(np.clip(tint, 0, 1), np.float32)
+
+
+def _shade(model: HeadModel, look: HairLook, grown: GrownHair | None) -> Doubles:
+    """``(V,)`` 0..1: the part of the surroundings' light that hair keeps off the skin."""
+    kept_off = hair_shade(model, look)
+    return kept_off if grown is None else np.maximum(kept_off, grown.shade(model.vertices))

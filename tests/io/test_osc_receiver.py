@@ -13,7 +13,7 @@ from agentface.io.osc.codec import decode
 from agentface.io.osc.receiver import ANSWERS_A_SECOND, ANSWERS_AT_ONCE, Receiver
 from agentface.io.osc.schedule import FURTHEST_S, MOST
 from agentface.requests import SetMuscle
-from agentface.speech.speaker import Speaker
+from agentface.speech.synthesizer import Synthesizer
 from agentface.talk.talker import Talker
 from tests.clocks import ManualClock
 from tests.heads import head_model
@@ -526,7 +526,7 @@ def test_the_status_is_limited_over_all_senders(desk):
 
 def test_a_voice_that_fails_later_is_answered_to_who_had_it_speak(desk):
     voice = FakeVoice()
-    desk.face._talker = Talker(desk.face, Speaker(lambda *_: voice))
+    desk.face._agendas.talker = Talker(desk.face, Synthesizer(lambda *_: voice))
     desk.take(message("/agentface/say", "s", "Bad."), sender=("127.0.0.1", 2))
     desk.take(message("/agentface/say", "s", "Good."))
     assert desk.said() == []

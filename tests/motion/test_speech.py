@@ -158,6 +158,22 @@ def test_a_revision_counts_from_its_first_phone_on():
     assert channel.status is None
 
 
+def test_what_is_told_once_more_changes_nothing_though_its_times_are_rounded():
+    """As when the same phones are told from another moment: they begin a hair later than those they replace."""
+    once, often = (SpeechChannel(compiled=False) for _ in range(2))
+    for channel in (once, often):
+        channel.speak(saying(0.2, 0.05, 0.2, 0.1, 0.3), live=True)
+    for _ in range(30):
+        now = 0.01
+        for channel in (once, often):
+            channel.advance(now)
+        told = [Phone(p.symbol, p.start_s, p.end_s) for p in often._current._phones]
+        shift = often._current.began - often._now + 1e-12
+        often.speak([Phone(p.symbol, p.start_s + shift, p.end_s + shift) for p in told], live=True)
+        assert len(often._current._phones) == len(once._current._phones)
+        assert shown(often) == pytest.approx(shown(once), abs=0.02)
+
+
 def test_live_phones_wait_behind_what_is_not_live():
     channel = SpeechChannel(compiled=False)
     channel.speak(saying(1.0))
@@ -209,10 +225,11 @@ def test_the_jaw_keeps_to_its_limit_whatever_is_felt(sound, felt):
 @given(
     st.lists(st.floats(0, 1), min_size=ARTICULATION.size, max_size=ARTICULATION.size),
     st.floats(0, 1),
+    st.booleans(),
 )
-def test_what_is_shown_is_speech_and_what_is_left_of_what_is_felt(sample, felt):
+def test_what_is_shown_is_speech_and_what_is_left_of_what_is_felt(sample, felt, compiled):
     yields = default_conflicts().yields
-    yielding = Yielding(ARTICULATION, yields)
+    yielding = Yielding(ARTICULATION, yields, compiled=compiled)
     values, weights = np.zeros(len(yielding.names)), np.zeros(len(yielding.names))
     sample = np.array(sample)
     yielding.write(sample, values, weights)
@@ -230,6 +247,15 @@ def test_what_is_shown_is_speech_and_what_is_left_of_what_is_felt(sample, felt):
             assert value >= 0.0
         else:
             assert value == pytest.approx(whole, abs=1e-9)
+
+
+@given(st.lists(st.floats(-2, 2), min_size=ARTICULATION.size, max_size=ARTICULATION.size))
+def test_the_kernel_of_yielding_equals_its_numpy_twin(sample):
+    twins = [Yielding(ARTICULATION, default_conflicts().yields, compiled=how) for how in (True, False)]
+    wanted = np.full((2, 2, len(twins[0].names)), np.nan)
+    for yielding, (values, weights) in zip(twins, wanted, strict=True):
+        yielding.write(np.array(sample), values, weights)
+    np.testing.assert_allclose(wanted[0], wanted[1], atol=1e-12)
 
 
 def test_with_no_limit_the_jaw_is_as_open_as_both_make_it():

@@ -17,8 +17,8 @@ from agentface.mesh.normals import vertex_normals
 from agentface.mesh.smoothstep import smoothstep
 from agentface.view.bake.flat import EYE_INSET
 from agentface.view.dressing import dressed_skin, grown_hair, irregularities
+from agentface.view.hair.grown import GrownHair
 from agentface.view.hair.hair_mesh import hair_colours, hair_strips, hair_triangles, strand_mesh
-from agentface.view.hair.head_hair import GrownHair
 from agentface.view.hair.ribbons import Hairs
 from agentface.view.hair.sheets import LOCKS
 from agentface.view.parts.anchored import Anchored, eye_linings

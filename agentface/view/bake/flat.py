@@ -11,7 +11,7 @@ from agentface.head.look import HairLook, Look
 from agentface.head.skin_image import bled
 from agentface.view.gl.context import compile_program
 from agentface.view.gl.noise import SIDE, noise_volume
-from agentface.view.hair.head_hair import GrownHair
+from agentface.view.hair.grown import GrownHair
 from agentface.view.hair.sheets import LOCKS
 from agentface.view.parts.rigid import IRIS_RADIUS
 

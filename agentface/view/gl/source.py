@@ -19,7 +19,7 @@ precision highp int;
 precision highp sampler2D;
 precision highp sampler3D;
 precision highp sampler2DShadow;"""
-"""GLSL ES 3.00, section 4.5.4: samplers but two-dimensional ones, and floats of fragments, have no precision of their own."""
+"""GLSL ES 3.00, section 4.5.4: most samplers, and the floats of fragments, have no precision of their own."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -25,18 +25,9 @@ class Mouth:
     """What is behind the lips, on the GPU."""
 
     def __init__(self, context: Any, program: Any, model: HeadModel) -> None:
-        self._model, self._program = model, program
+        self._program = program
         self._parts = {name: RigidPart(context, program, mouth_mesh(model, name)) for name in PARTS}
-        ring = model.lips.rings[LipRing.LINING]
-        self._corners = ring.upper[0], ring.upper[-1]
-        touching = model.lips.rings[: LipRing.RED + 1]
-        self._upper, self._lower = (
-            np.array([[half[round(at * (len(half) - 1))] for at in _COLUMNS] for half in halves])
-            for halves in ([ring.upper for ring in touching], [ring.lower for ring in touching])
-        )
-        self._bow = 1.0 - (2.0 * _COLUMNS - 1.0) ** 2  # an opening between two bows
-        self._at_rest = self._gap(*self._edges(model.vertices))
-        self._half_at_rest = self._half(model.vertices)
+        self._opening = MouthOpening(model)
 
     def draw(self, geometry: FaceGeometry) -> None:
         """Draw it as ``geometry`` has it."""
@@ -49,7 +40,40 @@ class Mouth:
 
     def opening(self, geometry: FaceGeometry) -> dict[str, object]:
         """The uniforms of ``shaders/mouth.glsl``."""
-        vertices = geometry.vertices
+        return self._opening.uniforms(geometry.vertices)
+
+
+class MouthOpening:
+    """How far the mouth is open, by the vertices of the lips."""
+
+    def __init__(self, model: HeadModel) -> None:
+        ring = model.lips.rings[LipRing.LINING]
+        self._corners = ring.upper[0], ring.upper[-1]
+        touching = model.lips.rings[: LipRing.RED + 1]
+        self._upper, self._lower = (
+            np.array([[half[round(at * (len(half) - 1))] for at in _COLUMNS] for half in halves])
+            for halves in ([ring.upper for ring in touching], [ring.lower for ring in touching])
+        )
+        self._bow = 1.0 - (2.0 * _COLUMNS - 1.0) ** 2  # an opening between two bows
+        self._at_rest = self._gap(*self._edges(model.vertices))
+        self._half_at_rest = self._half(model.vertices)
+        self._opened = 0.12 * model.landmarks.eye_separation
+
+    def record(self) -> dict[str, Any]:
+        """What the same numbers are made of elsewhere."""
+        return {
+            "corners": np.array(self._corners, np.int32),
+            "upper": self._upper,
+            "lower": self._lower,
+            "bow": self._bow,
+            "gap_at_rest": self._at_rest,
+            "half_at_rest": self._half_at_rest,
+            "opened": self._opened,
+            "pursed": _PURSED,
+        }
+
+    def uniforms(self, vertices: Floats) -> dict[str, object]:
+        """The uniforms of ``shaders/mouth.glsl``, with the skin at ``vertices (V, 3)`` m."""
         half = self._half(vertices)
         front = 0.5 * float(vertices[self._upper[0], 2].mean() + vertices[self._lower[0], 2].mean())
         corner = vertices[list(self._corners), 1:].mean(0)
@@ -71,8 +95,7 @@ class Mouth:
 
     def _light(self, gap: float) -> float:
         """The part of the light that reaches the teeth: all through a mouth open by a finger, little through a slit."""
-        opened = (gap - self._at_rest) / (0.12 * self._model.landmarks.eye_separation)
-        return min(1.0, 0.03 + 0.97 * max(0.0, opened))
+        return min(1.0, 0.03 + 0.97 * max(0.0, (gap - self._at_rest) / self._opened))
 
     def _gap(self, upper: Floats, lower: Floats) -> float:
         """How high the middle of an opening between two bows is that lets through as much as these edges do, m."""
