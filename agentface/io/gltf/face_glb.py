@@ -22,7 +22,7 @@ from agentface.io.gltf.materials import add_materials
 from agentface.io.gltf.modes import ModeFinder
 from agentface.io.gltf.recorder import SurfaceRecorder
 from agentface.io.gltf.surface import Surface
-from agentface.io.gltf.writer import GltfWriter, Target, NodeTrack, quaternions
+from agentface.io.gltf.writer import GltfWriter, NodeTrack, Target, quaternions
 
 ERROR_MM, MOST_MODES = 0.1, 128
 LONGEST = 20_000

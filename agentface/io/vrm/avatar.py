@@ -11,7 +11,6 @@ from typing import Any
 
 from agentface.deform.geometry import FaceGeometry
 from agentface.deform.protocol import Deformer
-from agentface.face import Face
 from agentface.head.look import Look
 from agentface.head.model import HeadModel
 from agentface.head.provenance import read_provenance
@@ -30,13 +29,13 @@ EXTENSION = "VRMC_vrm"
 _THUMBNAIL = 512
 
 
-def encode_avatar(face: Face, look: Look, deformer: Deformer, told: Told = lambda _: None) -> GlbFace:
-    """The avatar of ``face``, which is at rest; ``told`` gets how many expressions are done.
+def encode_avatar(model: HeadModel, look: Look, deformer: Deformer, told: Told = lambda _: None) -> GlbFace:
+    """The avatar of a face; ``told`` gets how many expressions are done.
 
     Raises GraphicsError when there is no OpenGL, which paints its pictures.
     """
-    model, parts = face.model, face_parts(face.model, look)
-    expressions = ExpressionBaker(face, deformer, parts).baked(told)
+    parts = face_parts(model, look)
+    expressions = ExpressionBaker(model, deformer, parts).baked(told)
     provenance = read_provenance(model.folder)
     writer = GltfWriter(provenance.copyright_line)
     joints, bones = add_bones(writer, model)
