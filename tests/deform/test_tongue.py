@@ -51,7 +51,7 @@ def around(geometry, model):
     }
 
 
-@njit
+@njit(cache=True)
 def deepest(points, corners):
     """How far above or below it the surface of a closed mesh ``(T, 3, 3)`` is, of the point most inside; 0 for none."""
     most = 0.0
