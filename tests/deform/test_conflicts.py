@@ -50,6 +50,7 @@ def check_poses(face, seed, poke_every):
             "tongue",
             "pupils",
             "eye_thrust",
+            "shoulders",
         ):
             assert np.isfinite(getattr(geometry, name)).all(), (number, name)
         over = np.flatnonzero(edges.flipped(geometry.vertices) & outside)

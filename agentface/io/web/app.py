@@ -6,7 +6,6 @@ import asyncio
 import json
 from collections.abc import Callable, Mapping
 from concurrent.futures import Future
-from pathlib import Path
 from typing import Any, cast
 
 from starlette.applications import Starlette
@@ -24,18 +23,17 @@ from agentface.io.web.frames import MODES, Mode
 from agentface.io.web.hub import Client, Hub
 from agentface.io.web.inbox import Inbox
 from agentface.io.web.openapi import openapi
+from agentface.io.web.page_files import FOLDER
 from agentface.io.web.stage import Stage
 from agentface.requests import Request
 
-PAGE = Path(__file__).parent / "page" / "dist"
-"""What ``make build`` makes of the page; not there in a checkout without node."""
 OPEN_PATHS = frozenset({"/", "/agentface.js", "/licences.txt", "/favicon.ico"})
 LARGEST_MESSAGE = 64 * 1024
 """Bytes of one message of a page."""
 _MESSAGES_AT_ONCE, _MESSAGES_A_SECOND = 480.0, 240.0
 _ANSWER_S = 10.0
 _NO_PAGE = """expected the page of this package in {folder}, got none: it is built with node.
-make build makes it; everything but the page works without."""
+make page builds it; everything but the page works without."""
 
 
 class WebFaces:
@@ -270,11 +268,11 @@ async def _until_one_ends(*parts: Any) -> None:
 
 async def _page(asked: HttpRequest) -> Response:
     name = "index.html" if asked.url.path == "/" else asked.url.path[1:]
-    if not (PAGE / "index.html").is_file():
-        return PlainTextResponse(_NO_PAGE.format(folder=PAGE), 404 if name != "index.html" else 200)
-    if name not in {path.name for path in PAGE.iterdir()}:
+    if not (FOLDER / "index.html").is_file():
+        return PlainTextResponse(_NO_PAGE.format(folder=FOLDER), 404 if name != "index.html" else 200)
+    if name not in {path.name for path in FOLDER.iterdir()}:
         return await _not_found(asked, Exception())
-    return FileResponse(PAGE / name, headers={"Cache-Control": "no-cache", "X-Content-Type-Options": "nosniff"})
+    return FileResponse(FOLDER / name, headers={"Cache-Control": "no-cache", "X-Content-Type-Options": "nosniff"})
 
 
 async def _refused(_: HttpRequest, error: Exception) -> Response:

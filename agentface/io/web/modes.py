@@ -13,7 +13,8 @@ import numpy.typing as npt
 from agentface.conventions import Floats
 
 _BEYOND = 24  # directions more than are asked for
-_PASSES = 3
+_PASSES = 2
+_LEAST = 1e-12  # of the largest variance
 _WHOLE = 32767
 
 
@@ -37,7 +38,7 @@ class Modes(NamedTuple):
 def principal_modes(samples: Floats, count: int, rng: np.random.Generator) -> Floats:
     """``(count, D)`` float32 orthonormal rows: the directions along which ``samples (S, D)`` go farthest from 0.
 
-    Fewer than ``count`` of them where there are fewer samples.
+    Fewer than ``count`` of them where the samples have fewer.
     """
     wanted = min(count, *samples.shape)
     found = samples @ rng.standard_normal((samples.shape[1], min(wanted + _BEYOND, *samples.shape)), np.float32)
@@ -45,8 +46,12 @@ def principal_modes(samples: Floats, count: int, rng: np.random.Generator) -> Fl
         across, _ = np.linalg.qr(found)
         found = samples @ (samples.T @ across)
     across, _ = np.linalg.qr(found)
-    _, _, rows = np.linalg.svd(across.T @ samples, full_matrices=False)
-    return np.ascontiguousarray(rows[:wanted], np.float32)
+    few = across.T @ samples
+    lengths, turned = np.linalg.eigh((few @ few.T).astype(np.float64))
+    lengths, turned = lengths[::-1][:wanted], turned[:, ::-1][:, :wanted]
+    kept = lengths > _LEAST * max(float(lengths[0]), _LEAST)
+    rows = (turned[:, kept] / np.sqrt(lengths[kept])).astype(np.float32).T @ few
+    return np.ascontiguousarray(rows)
 
 
 def stored(rows: Floats, reach: Floats) -> Modes:

@@ -22,7 +22,7 @@ from agentface.io.web.audio import pieces, silence
 from agentface.io.web.guard import guarded
 from agentface.io.web.hub import Client, Hub
 from agentface.io.web.inbox import Inbox
-from agentface.io.web.stage import HeadEncoder, Stage, encode_head_file
+from agentface.io.web.stage import HeadEncoder, Measure, Stage, basis_of, encode_head_file
 from agentface.live.loop import Frame
 from agentface.speech.sound import Sound
 
@@ -52,6 +52,7 @@ class WebServer:
         clock: limits rates and measures.
         told: told in a line what takes long.
         encode: makes a head's file.
+        measure: finds the basis of a face.
 
     Raises ServerError where the extra ``web`` is missing or the address cannot be had, InvalidValueError.
     """
@@ -70,12 +71,13 @@ class WebServer:
         clock: Clock | None = None,
         told: Callable[[str], object] = lambda _: None,
         encode: HeadEncoder = encode_head_file,
+        measure: Measure = basis_of,
     ) -> None:
         uvicorn = _uvicorn()
         self.access = Access.of(host, origins, token)
         self._clock = clock or SystemClock()
         self._stages = {
-            name: Stage(face, name, deformer=deformer, look=look, encode=encode, fps=fps, told=told)
+            name: Stage(face, name, deformer=deformer, look=look, encode=encode, fps=fps, told=told, measure=measure)
             for name, face in _by_id(faces).items()
         }
         self._hub, self._inbox = Hub(), Inbox()
@@ -117,6 +119,8 @@ class WebServer:
 
     def close(self) -> None:
         """Stop serving; may be called twice."""
+        if self._server.should_exit:
+            return
         self._inbox.close()
         for voice in self._voices.values():
             voice.close()

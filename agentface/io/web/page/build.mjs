@@ -1,4 +1,5 @@
-// Bundles the page into dist/: agentface.js, which needs nothing else, and the licences of what is in it.
+// Bundles the page into dist/: agentface.js, which needs nothing else, with the licences of what is in it, and face3d.js,
+// the face alone for a scene whose page brings three.js.
 
 import { build } from 'esbuild';
 import { copyFile, mkdir, readFile, rm, writeFile } from 'node:fs/promises';
@@ -10,10 +11,16 @@ const dist = join(here, 'dist');
 
 await rm(dist, { recursive: true, force: true });
 await mkdir(dist);
+const options = { bundle: true, minify: true, format: 'esm', target: 'es2022', legalComments: 'none', metafile: true };
 const result = await build({
-  entryPoints: [join(here, 'src/index.js')], outfile: join(dist, 'agentface.js'),
-  bundle: true, minify: true, format: 'esm', target: 'es2022', legalComments: 'none', metafile: true,
+  ...options, entryPoints: [join(here, 'src/index.js')], outfile: join(dist, 'agentface.js'),
   banner: { js: '/* agentface, MIT; three.js, MIT: see licences.txt */' },
+});
+
+// for a page that has three.js already
+await build({
+  ...options, entryPoints: [join(here, 'src/face3d.js')], outfile: join(dist, 'face3d.js'), external: ['three'],
+  banner: { js: '/* agentface, MIT */' },
 });
 
 const packages = new Set();
@@ -27,4 +34,4 @@ for (const name of [...packages].sort()) {
   texts.push(`${name} ${version} (${license})\n\n${await readFile(join(here, 'node_modules', name, 'LICENSE'), 'utf8')}`);
 }
 await writeFile(join(dist, 'licences.txt'), texts.join('\n\n'));
-await copyFile(join(here, 'index.html'), join(dist, 'index.html'));
+for (const name of ['index.html', 'recording.html']) await copyFile(join(here, name), join(dist, name));

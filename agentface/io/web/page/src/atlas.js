@@ -25,33 +25,31 @@ export class WrinkleAtlas {
     return true;
   }
 
-  smooth(patch) {
-    this.each(patch, (_, texel) => {
-      this.heights[texel] = 0;
-      this.texels.fill(EVEN, 4 * texel, 4 * texel + 4);
-      this.texels[4 * texel + 3] += this.grain[texel];
-    });
+  smooth({ row, column, heights }) {
+    const [high, wide] = heights.shape, { side, texels, grain } = this;
+    for (let y = row; y < row + high; y++) {
+      const first = y * side + column;
+      this.heights.fill(0, first, first + wide);
+      texels.fill(EVEN, 4 * first, 4 * (first + wide));
+      for (let texel = first; texel < first + wide; texel++) texels[4 * texel + 3] = EVEN + grain[texel];
+    }
   }
 
   /** Let the higher of two trains stand. */
-  raise(patch, level) {
-    const { heights, relief } = patch, root = Math.trunc(256 * Math.sqrt(level)), whole = Math.trunc(256 * level);
-    this.each(patch, (own, texel) => {
-      const height = level * heights[own];
-      if (!(height > this.heights[texel])) return;
-      this.heights[texel] = height;
-      const from = 4 * own, to = 4 * texel;
-      this.texels[to] = EVEN + ((relief[from] * root) >> 8);
-      this.texels[to + 1] = EVEN + ((relief[from + 1] * root) >> 8);
-      this.texels[to + 2] = EVEN + ((relief[from + 2] * whole) >> 8);
-      this.texels[to + 3] = EVEN + this.grain[texel] + ((relief[from + 3] * whole) >> 8);
-    });
-  }
-
-  each({ row, column, heights }, what) {
-    const [high, wide] = heights.shape;
-    for (let own = 0, y = row; y < row + high; y++) {
-      for (let texel = y * this.side + column, end = texel + wide; texel < end; texel++, own++) what(own, texel);
+  raise({ row, column, heights, relief }, level) {
+    const [high, wide] = heights.shape, { side, texels, grain } = this, here = this.heights;
+    const root = Math.trunc(256 * Math.sqrt(level)), whole = Math.trunc(256 * level);
+    for (let y = 0, own = 0; y < high; y++) {
+      for (let x = 0, texel = (row + y) * side + column; x < wide; x++, own++, texel++) {
+        const height = level * heights[own];
+        if (!(height > here[texel])) continue;
+        here[texel] = height;
+        const from = 4 * own, to = 4 * texel;
+        texels[to] = EVEN + ((relief[from] * root) >> 8);
+        texels[to + 1] = EVEN + ((relief[from + 1] * root) >> 8);
+        texels[to + 2] = EVEN + ((relief[from + 2] * whole) >> 8);
+        texels[to + 3] = EVEN + grain[texel] + ((relief[from + 3] * whole) >> 8);
+      }
     }
   }
 }

@@ -5,7 +5,7 @@ import { AUDIO, FRAME, FrameReader, readSound } from './frames.js';
 const SHORTEST_S = 0.25, LONGEST_S = 5, PATIENCE_S = 15;
 
 /**
- * Events: `hello` (detail: the server's hello), `open`, `closed`, `sound` (a chunk), `message` (any other text).
+ * Events: `hello` (detail: the server's hello), `open`, `closed`, `frame`, `sound` (a chunk), `message` (any other text).
  * `take()` gives the newest frame that was not taken yet, or null.
  */
 export class Connection extends EventTarget {
@@ -18,6 +18,7 @@ export class Connection extends EventTarget {
     this.newest = null;
     this.reader = null;
     this.received = 0;
+    this.refused = 0;
     this.open();
   }
 
@@ -47,11 +48,9 @@ export class Connection extends EventTarget {
     } catch {
       return;
     }
+    if (message === null || typeof message !== 'object') return;
     if (message.type === 'hello') {
-      this.reader = new FrameReader(message.fields);
-      this.newest = null;
-      this.wait = SHORTEST_S;
-      this.tell('hello', message);
+      this.greeted(message);
       return;
     }
     const asked = this.asked.get(message.id);
@@ -64,14 +63,32 @@ export class Connection extends EventTarget {
     this.tell('message', message);
   }
 
+  greeted(hello) {
+    this.newest = this.reader = null;
+    try {
+      this.reader = new FrameReader(hello.fields);
+    } catch (error) {
+      this.tell('message', { type: 'error', error: { where: 'hello', expected: 'fields that this page knows', got: error.message } });
+      return;
+    }
+    this.wait = SHORTEST_S;
+    this.tell('hello', hello);
+  }
+
   readBytes(buffer) {
     const kind = new Uint8Array(buffer)[0];
     if (kind === FRAME) {
+      if (buffer.byteLength !== this.reader?.byteLength) {
+        this.refused += 1;
+        return;
+      }
       this.newest = buffer;
       this.received += 1;
       this.tell('frame');
-    } else if (kind === AUDIO && buffer.byteLength >= 16) {
-      this.tell('sound', readSound(buffer));
+    } else if (kind === AUDIO) {
+      const sound = readSound(buffer);
+      if (sound) this.tell('sound', sound);
+      else this.refused += 1;
     }
   }
 
@@ -79,7 +96,7 @@ export class Connection extends EventTarget {
   take() {
     const buffer = this.newest;
     this.newest = null;
-    return buffer && this.reader ? this.reader.read(buffer) : null;
+    return buffer && this.reader.read(buffer);
   }
 
   /** Say that frame `number` has been drawn. */

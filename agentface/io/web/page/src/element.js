@@ -2,6 +2,7 @@
 
 import { Connection } from './connection.js';
 import { Face3D } from './face3d.js';
+import { Player, Recording } from './recording.js';
 import { SharedClock, Sound } from './sound.js';
 import { Stage } from './stage.js';
 
@@ -12,7 +13,8 @@ const MAKES_CONNECTION = ['server', 'face', 'look', 'mode', 'token'];
 /**
  * Attributes: `server` (where agentface serves, the script's own place when missing), `face`, `look`, `camera`, `quality`,
  * `transparent`, `mode`, `token`, `src` (a recorded performance instead of a server), `muted`.
- * Events: `ready`, `connected`, `disconnected`, `spoken`, `status`, `error`, each with a `detail`.
+ * Events: `ready`, `connected`, `disconnected`, `spoken`, `status`, `error`, each with a `detail`; of a recording `recorded`, when it can be
+ * played, and `ended`.
  */
 export class AgentFace extends HTMLElement {
   static observedAttributes = [...MAKES_STAGE, ...MAKES_CONNECTION, 'camera', 'src', 'muted'];
@@ -29,7 +31,7 @@ export class AgentFace extends HTMLElement {
 
   connectedCallback() {
     this.makeStage();
-    this.makeConnection();
+    this.begin();
     for (const type of ['pointerdown', 'keydown']) document.addEventListener(type, this.unlock);
   }
 
@@ -54,8 +56,13 @@ export class AgentFace extends HTMLElement {
       if (head) this.wear(head.url, head.bytes, head.shown);
     } else {
       this.end();
-      this.makeConnection();
+      this.begin();
     }
+  }
+
+  begin() {
+    if (this.hasAttribute('src')) this.makePlayer();
+    else this.makeConnection();
   }
 
   /** The face as an object of three.js; null until it is there. */
@@ -79,6 +86,15 @@ export class AgentFace extends HTMLElement {
   /** Look at a point in metres, in the head's axes: x to the person's left, y up, z forward. */
   lookAt(x, y, z) {
     return this.request('look_at', x, y, z);
+  }
+
+  /** Play the recording of `src` on, or stop it. */
+  play() {
+    return this.player?.play();
+  }
+
+  pause() {
+    this.player?.pause();
   }
 
   /** What the face is doing. */
@@ -131,9 +147,29 @@ export class AgentFace extends HTMLElement {
     });
   }
 
+  async makePlayer() {
+    const source = this.getAttribute('src');
+    try {
+      const recording = await Recording.load(source);
+      await this.wear(source, recording.head);
+      if (!this.stage || this.getAttribute('src') !== source) return;
+      this.player = new Player(recording, (frame) => {
+        this.face.show(frame);
+        this.head.shown = frame;
+        this.drawSoon();
+      });
+      this.player.addEventListener('ended', () => this.tell('ended'));
+      this.tell('recorded', { duration_s: recording.duration_s });
+      if (this.hasAttribute('autoplay')) await this.play();
+    } catch (error) {
+      this.tell('error', { error: { where: 'src', expected: 'a recorded performance', got: String(error) } });
+    }
+  }
+
   end() {
     this.connection?.close();
-    this.connection = null;
+    this.player?.pause();
+    this.connection = this.player = null;
     this.clock.clear();
     this.sound.hush();
     cancelAnimationFrame(this.waiting);

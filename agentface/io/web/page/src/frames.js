@@ -7,6 +7,7 @@ const READERS = {
 
 export const FRAME = 0;
 export const AUDIO = 2;
+const SOUND_BEGINS = 16;
 
 /**
  * Reads frames of one layout: `fields` of {name, type, count, scale}, little endian, behind a byte that says what comes.
@@ -44,10 +45,17 @@ export class FrameReader {
   }
 }
 
-/** A chunk of sound: `channels`, `rate` in hertz, `start_s` on the frames' clock, `samples` interleaved; none: be silent. */
+/**
+ * A chunk of sound: `channels`, `rate` in hertz, `start_s` on the frames' clock, `samples` interleaved; none: be silent.
+ * Null for what is no sound that a browser can play.
+ */
 export function readSound(buffer) {
+  if (buffer.byteLength < SOUND_BEGINS) return null;
   const view = new DataView(buffer);
-  const samples = new Float32Array((buffer.byteLength - 16) / 2);
-  for (let i = 0; i < samples.length; i++) samples[i] = view.getInt16(16 + 2 * i, true) / 32768;
-  return { channels: view.getUint8(1), rate: view.getUint32(4, true), start_s: view.getFloat64(8, true), samples };
+  const [channels, rate, start_s] = [view.getUint8(1), view.getUint32(4, true), view.getFloat64(8, true)];
+  const count = (buffer.byteLength - SOUND_BEGINS) / 2;
+  const sane = channels >= 1 && channels <= 8 && rate >= 4000 && rate <= 192000 && Number.isFinite(start_s);
+  if (!sane || !Number.isInteger(count / channels)) return null;
+  const samples = Float32Array.from({ length: count }, (_, i) => view.getInt16(SOUND_BEGINS + 2 * i, true) / 32768);
+  return { channels, rate, start_s, samples };
 }

@@ -6,6 +6,7 @@ export { AgentFace };
 export { Connection } from './connection.js';
 export { Face3D } from './face3d.js';
 export { FrameReader } from './frames.js';
+export { Player, Recording } from './recording.js';
 export { Stage } from './stage.js';
 
 if (!customElements.get('agent-face')) customElements.define('agent-face', AgentFace);

@@ -1,6 +1,7 @@
 // The sound of speech, in time with the frames: both have times on one clock, the server's.
 
 const LATE_S = 0.02;
+const SEAM_S = 0.005;   // pieces that are less apart are one sound
 const REMEMBERED = 240;
 
 /** Where the frames' clock stands on the page's: frames that came quickest say it. */
@@ -32,6 +33,7 @@ export class Sound {
     this.context = null;
     this.playing = new Set();
     this.muted = false;
+    this.end = { sent_s: -Infinity, heard_s: -Infinity };
   }
 
   get locked() {
@@ -62,15 +64,17 @@ export class Sound {
       const row = buffer.getChannelData(channel);
       for (let i = 0; i < count; i++) row[i] = samples[i * channels + channel];
     }
-    const heard = this.context.outputLatency || this.context.baseLatency || 0;
-    const at = this.context.currentTime + (local - performance.now() / 1000) - heard;
-    const late = this.context.currentTime - at;
+    const now = this.context.currentTime, heard = this.context.outputLatency || this.context.baseLatency || 0;
+    const follows = Math.abs(start_s - this.end.sent_s) < SEAM_S && this.end.heard_s > now;
+    const at = follows ? this.end.heard_s : now + (local - performance.now() / 1000) - heard;
+    const late = now - at;
+    this.end = { sent_s: start_s + buffer.duration, heard_s: at + buffer.duration };
     if (late > buffer.duration) return;
     const source = this.context.createBufferSource();
     source.buffer = buffer;
     source.connect(this.context.destination);
     source.onended = () => this.playing.delete(source);
-    source.start(Math.max(at, this.context.currentTime), late > LATE_S ? late : 0);
+    source.start(Math.max(at, now), late > LATE_S ? late : 0);
     this.playing.add(source);
   }
 
