@@ -63,10 +63,10 @@ def bounds_of(corners):
 
 @njit(cache=True)
 def outside(point, low, high):
+    inside = True
     for axis in range(3):
-        if point[axis] < low[axis] or point[axis] > high[axis]:
-            return True
-    return False
+        inside = inside and low[axis] <= point[axis] <= high[axis]
+    return not inside
 
 
 @njit(cache=True)
