@@ -18,7 +18,6 @@ from agentface.commands.streams import tell
 
 if TYPE_CHECKING:
     from agentface.face import Face
-    from agentface.head.look import Look
     from agentface.io.gltf.recorder import SurfaceRecorder
 
 
@@ -90,6 +89,7 @@ def export(*, json_file: str | None, **options: Any) -> None:
 
 def _glb(asked: Asked) -> dict[str, Any]:
     from agentface.deform.protocol import make_deformer
+    from agentface.head.look import load_look
     from agentface.io.files import write_file
     from agentface.io.gltf.face_glb import FaceGlb
 
@@ -98,7 +98,7 @@ def _glb(asked: Asked) -> dict[str, Any]:
         raise click.UsageError("--shapes exact goes with --performance FILE, whose shapes they are")
     found = None if asked.performance is None else opened(asked.performance, asked.file_fps)
     face = make_face(asked.face, asked.deformer, look=asked.look, running=True)
-    made = FaceGlb(face.model, _look(face, asked.look), make_deformer(asked.deformer, face.model))
+    made = FaceGlb(face.model, load_look(face.model, asked.look), make_deformer(asked.deformer, face.model))
     with until_told() as ending:
         played = None if found is None else _playing(face, found, asked.fps, ending)
         if shapes == "arkit":
@@ -115,15 +115,18 @@ def _glb(asked: Asked) -> dict[str, Any]:
 
 def _vrm(asked: Asked) -> dict[str, Any]:
     from agentface.deform.protocol import make_deformer
+    from agentface.head.look import load_look
+    from agentface.head.model import load_model
     from agentface.io.files import write_file
     from agentface.io.vrm.avatar import encode_avatar
 
     for name, given in (("--performance", asked.performance), ("--shapes", asked.shapes)):
         if given is not None:
             raise click.UsageError(f"{name} goes with a .glb; an avatar has its own expressions, and no animation")
-    face = make_face(asked.face, asked.deformer, look=asked.look, running=True)
+    model = load_model(asked.face)
+    look, deformer = load_look(model, asked.look), make_deformer(asked.deformer, model)
     with progress("expressions", _EXPRESSIONS) as told:
-        made = encode_avatar(face, _look(face, asked.look), make_deformer(asked.deformer, face.model), told)
+        made = encode_avatar(model, look, deformer, told)
     write_file(asked.output, made.content)
     _tell_figures(asked.output, made.figures)
     return {"format": "vrm", **made.figures}
@@ -157,12 +160,6 @@ def _playing(face: Face, found: Opened, fps: float | None, ending: Ending) -> Ca
             raise SystemExit(ending.code)
 
     return play
-
-
-def _look(face: Face, look: str | None) -> Look:
-    from agentface.head.look import load_look
-
-    return load_look(face.model, look)
 
 
 def _write_sound(found: Opened, output: Path) -> str | None:

@@ -22,7 +22,7 @@ from agentface.io.gltf.materials import add_materials
 from agentface.io.gltf.modes import ModeFinder
 from agentface.io.gltf.recorder import SurfaceRecorder
 from agentface.io.gltf.surface import Surface
-from agentface.io.gltf.writer import GltfWriter, Target, Track, quaternions
+from agentface.io.gltf.writer import GltfWriter, NodeTrack, Target, quaternions
 
 ERROR_MM, MOST_MODES = 0.1, 128
 LONGEST = 20_000
@@ -109,21 +109,21 @@ class FaceGlb:
             node = figure.add(part, materials[part.material], targets)
             if shaped.weights is not None and own:
                 columns = [shaped.order.index(name) for name in own]
-                tracks.append(Track(node, "weights", shaped.weights[:, columns].ravel()))
+                tracks.append(NodeTrack(node, "weights", shaped.weights[:, columns].ravel()))
         if recorder is not None:
             tracks += self._turns(recorder, joints)
             writer.animation("performance", recorder.times_s, tracks)
         content = writer.content()
         return GlbFace(content, self._figures(content, shaped, recorder))
 
-    def _turns(self, recorder: SurfaceRecorder, joints: Joints) -> list[Track]:
-        tracks = [Track(joints.nodes["head"], "rotation", quaternions(recorder.heads))]
+    def _turns(self, recorder: SurfaceRecorder, joints: Joints) -> list[NodeTrack]:
+        tracks = [NodeTrack(joints.nodes["head"], "rotation", quaternions(recorder.heads))]
         for number, name in enumerate(eyes_of(self.model)):
-            tracks.append(Track(joints.nodes[name], "rotation", quaternions(recorder.eyes[:, number])))
+            tracks.append(NodeTrack(joints.nodes[name], "rotation", quaternions(recorder.eyes[:, number])))
             thrust = recorder.thrusts[:, number]
             if thrust.any():
                 centre = joints.at[name] - joints.at["head"]
-                tracks.append(Track(joints.nodes[name], "translation", _forward(centre, thrust)))
+                tracks.append(NodeTrack(joints.nodes[name], "translation", _forward(centre, thrust)))
         return tracks
 
     def _figures(self, content: bytes, shaped: _Shaped, recorder: SurfaceRecorder | None) -> dict[str, Any]:
