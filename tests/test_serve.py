@@ -57,6 +57,7 @@ def test_usage(options):
         (["--vmc-in", "127.0.0.1:99999"], "expected HOST:PORT"),
         (["--vmc", "127.0.0.1:39539", "--vmc-names", "vrm"], "'vrm0', 'vrm1'"),
         (["--vmc-names", "vrm1"], "--vmc-names goes with --vmc"),
+        (["--vmc-eyes", "shapes"], "--vmc-eyes goes with --vmc"),
         (["--vmc-axes", "gltf"], "--vmc-axes goes with --vmc or --vmc-in"),
         (["--vmc-id", "amber"], "--vmc-id goes with --vmc or --vmc-in"),
         (["--vmc", "127.0.0.1:39539", "--vmc-in", "127.0.0.1:39539"], "the face would drive itself"),
@@ -70,7 +71,7 @@ def test_vmc_is_for_the_first_face_or_the_one_that_is_named():
     faces = {"left": object(), "right": object()}
 
     def options(name):
-        return VmcOptions(("127.0.0.1", 1), None, "vrm0", "unity", name)
+        return VmcOptions(("127.0.0.1", 1), None, "vrm0", "unity", "bones", name)
 
     assert list(options(None).first(faces)) == ["left", "right"]
     assert list(options("right").first(faces)) == ["right", "left"]

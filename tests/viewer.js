@@ -99,4 +99,35 @@ window.draw = (eye, target) => {
   camera.lookAt(...target);
   renderer.render(scene, camera);
 };
+// What a receiver of VMC does with messages, each its address and its arguments: the names of VRM 0 are those of VRM 1,
+// and Unity's axes have x the other way round.
+const presets = { Joy: "happy", Angry: "angry", Sorrow: "sad", Fun: "relaxed", Surprised: "surprised", A: "aa", I: "ih", U: "ou", E: "ee",
+  O: "oh", Blink: "blink", Blink_L: "blinkLeft", Blink_R: "blinkRight", Neutral: "neutral", LookUp: "lookUp", LookDown: "lookDown",
+  LookLeft: "lookLeft", LookRight: "lookRight" };
+const received = new Map();
+window.receive = (messages) => {
+  for (const [address, name, ...numbers] of messages) {
+    if (address === "/VMC/Ext/Blend/Val") received.set(presets[name] ?? name, numbers[0]);
+    if (address === "/VMC/Ext/Blend/Apply") received.forEach((value, key) => vrm.expressionManager.setValue(key, value));
+    if (address === "/VMC/Ext/Bone/Pos") {
+      const [x, y, z, w] = numbers.slice(3);
+      vrm.humanoid.getNormalizedBoneNode(name[0].toLowerCase() + name.slice(1))?.quaternion.set(x, -y, -z, w);
+    }
+  }
+  vrm.lookAt.target = null;
+  vrm.update(1 / 60);
+};
+
+// The expressions that an avatar shows, and where some of its bones look, in the scene.
+window.avatar = (bones) => {
+  loaded.scene.updateMatrixWorld(true);
+  const directions = {}, expressions = {};
+  for (const name of bones) directions[name] = vrm.humanoid.getRawBoneNode(name).getWorldDirection(new THREE.Vector3()).toArray();
+  for (const one of vrm.expressionManager.expressions) {
+    const value = vrm.expressionManager.getValue(one.expressionName);
+    if (value > 0.001) expressions[one.expressionName] = value;
+  }
+  return { expressions, directions };
+};
+
 window.ready = true;

@@ -47,11 +47,25 @@ _OPTIONS = (
         show_default=True,
         help="The axes of bones in VMC: left-handed as in Unity, or right-handed as in glTF.",
     ),
+    click.option(
+        "--vmc-eyes",
+        type=click.Choice(["bones", "shapes"]),
+        default="bones",
+        show_default=True,
+        help="By what the avatar's eyes turn.",
+    ),
     click.option("--vmc-id", metavar="ID", help="Which of several faces VMC is for; the first otherwise."),
 )
 
 
-_PLACES = {"to": "vmc", "listen": "vmc_in", "names": "vmc_names", "axes": "vmc_axes", "id": "vmc_id"}
+_PLACES = {
+    "to": "vmc",
+    "listen": "vmc_in",
+    "names": "vmc_names",
+    "axes": "vmc_axes",
+    "eyes": "vmc_eyes",
+    "id": "vmc_id",
+}
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,6 +77,7 @@ class VmcOptions:
         listen: host and port for a tracker.
         names: of the avatar's shapes.
         axes: of the bones.
+        eyes: by what the avatar's turn.
         id: of the face.
     """
 
@@ -70,6 +85,7 @@ class VmcOptions:
     listen: tuple[str, int] | None
     names: str
     axes: str
+    eyes: str
     id: str | None
 
     @property
@@ -103,6 +119,7 @@ def check_vmc(given: set[str], options: VmcOptions) -> None:
     """Raise UsageError for an option that does nothing, and for a face that would drive itself."""
     for name, goes_with, there in (
         ("vmc_names", "--vmc", options.to is not None),
+        ("vmc_eyes", "--vmc", options.to is not None),
         ("vmc_axes", "--vmc or --vmc-in", options.asked),
         ("vmc_id", "--vmc or --vmc-in", options.asked),
     ):
@@ -130,7 +147,8 @@ def vmc_links(name: str, face: Face, options: VmcOptions) -> Iterator[Links]:
             face.reports["vmc_in"] = lambda: receiver.status
         if options.to is not None:
             with wait_told(name, compiled=True):
-                sender = stack.enter_context(VmcSender(face, *options.to, names=options.names, axes=options.axes))
+                made = VmcSender(face, *options.to, names=options.names, axes=options.axes, eyes=options.eyes)
+                sender = stack.enter_context(made)
             links.told.append(f"{name} is sent by VMC to {sender.to}, with names of {options.names}")
             links.sinks.append(sender)
             face.reports["vmc"] = lambda: sender.status

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
@@ -44,7 +44,7 @@ class FrameBundle:
         self._bytes: npt.NDArray[np.uint8] = np.frombuffer(bytearray(builder.build().dgram), np.uint8)
         self._places = np.array(numbers)[:, None] + np.arange(4)
 
-    def packet(self, time_s: float, bones: Sequence[float], weights: npt.ArrayLike) -> bytes:
+    def packet(self, time_s: float, bones: Sequence[float], weights: npt.NDArray[np.floating[Any]]) -> bytes:
         """The frame's bytes.
 
         Args:
@@ -52,7 +52,7 @@ class FrameBundle:
             bones: ``POSE`` numbers for each of ``BONES``, in the protocol's axes.
             weights: 0..1 for each name.
         """
-        numbers = np.array([time_s, *bones, *np.asarray(weights).tolist()]) + 0.0  # no negative zeros
+        numbers = np.array([time_s, *bones, *weights.tolist()]) + 0.0  # no negative zeros
         self._bytes[self._places] = numbers.astype(">f4").view(np.uint8).reshape(-1, 4)
         return self._bytes.tobytes()
 

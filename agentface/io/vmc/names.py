@@ -29,6 +29,11 @@ def names_of(kind: str) -> tuple[str, ...]:
     return PRESETS if kind == "vrm1" else ARKIT_SHAPES
 
 
+def looks_of(kind: str) -> list[int]:
+    """Where among the names those stand by which eyes turn."""
+    return [place for place, name in enumerate(names_of(kind)) if name.lower().startswith(("look", "eyelook"))]
+
+
 def are_presets(kind: str) -> bool:
     """Whether these are names of presets and not of ARKit's weights."""
     return kind.startswith("vrm")

@@ -7,16 +7,20 @@ from collections.abc import Callable
 from types import TracebackType
 from typing import Any, Self
 
+import numpy as np
 import numpy.typing as npt
 
-from agentface.errors import ServerError
+from agentface.errors import ServerError, UnknownNameError
 from agentface.face import Face
 from agentface.io.vmc.axes import position_between, turn_between
 from agentface.io.vmc.bundle import BONES, FrameBundle
-from agentface.io.vmc.names import are_presets, names_of
+from agentface.io.vmc.names import are_presets, looks_of, names_of
 from agentface.live.loop import Frame
 from agentface.vrm.bones import FaceBones
+from agentface.vrm.turns import STILL
 
+EYES = ("bones", "shapes")
+"""By what eyes turn: avatars have either, or both, which then would turn them twice."""
 DEFAULT_PORT = 39539
 """Where what draws an avatar, the Marionette, listens."""
 
@@ -30,15 +34,26 @@ class VmcSender:
         port: 39539 for one that draws, 39540 for one that sends on.
         names: of the blend shapes, one of ``NAMES``.
         axes: one of ``AXES``.
+        eyes: one of ``EYES``; the others say that they look ahead.
 
-    Raises UnknownNameError for the names, ServerError for a host that is none.
+    Raises UnknownNameError for names and eyes, ServerError for a host that is none.
     """
 
     def __init__(
-        self, face: Face, host: str, port: int = DEFAULT_PORT, *, names: str = "vrm0", axes: str = "unity"
+        self,
+        face: Face,
+        host: str,
+        port: int = DEFAULT_PORT,
+        *,
+        names: str = "vrm0",
+        axes: str = "unity",
+        eyes: str = "bones",
     ) -> None:
-        self.names, self.axes = names, axes
+        if eyes not in EYES:
+            raise UnknownNameError("way to turn eyes", eyes, EYES)
+        self.names, self.axes, self._eyes = names, axes, eyes
         self._bundle = FrameBundle(names_of(names))
+        self._looks = looks_of(names) if eyes == "bones" else []
         self._weights = _presets_of(face) if are_presets(names) else _arkit_of(face)
         self._bones = FaceBones(face.model)
         self._socket, self._place = _to(host, port)
@@ -60,9 +75,12 @@ class VmcSender:
         bones = self._bones.bones(frame.geometry)
         numbers: list[float] = []
         for name in BONES:
+            still = self._eyes == "shapes" and name.endswith("Eye")
             numbers += position_between(self.axes, bones[name].position)
-            numbers += turn_between(self.axes, bones[name].turn)
-        packet = self._bundle.packet(frame.time_s, numbers, self._weights(frame))
+            numbers += turn_between(self.axes, STILL if still else bones[name].turn)
+        weights = np.array(self._weights(frame))
+        weights[self._looks] = 0.0
+        packet = self._bundle.packet(frame.time_s, numbers, weights)
         try:
             self._socket.sendto(packet, self._place)
             self.sent += 1

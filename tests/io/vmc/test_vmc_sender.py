@@ -17,9 +17,9 @@ from agentface.errors import ServerError, UnknownNameError
 from agentface.head.arkit import ARKIT_SHAPES
 from agentface.io.osc.codec import decode
 from agentface.io.vmc.bundle import FrameBundle
-from agentface.io.vmc.names import NAMES, names_of
+from agentface.io.vmc.names import NAMES, looks_of, names_of
 from agentface.io.vmc.receiver import VmcReceiver
-from agentface.io.vmc.sender import VmcSender
+from agentface.io.vmc.sender import EYES, VmcSender
 from agentface.live.loop import Frame, run
 from agentface.vrm.expressions import PRESETS
 from tests.heads import head_model
@@ -127,6 +127,7 @@ def test_the_52_are_those_of_the_solver(face, avatar):
     sent = weights(face, avatar, names="arkit")
     assert sent["mouthSmileLeft"][0] > 0.4
     expected = ShapeSolver(face.model).weights(face.pose.array)
+    expected[looks_of("arkit")] = 0.0  # the bones' part
     assert [value for (value,) in sent.values()] == pytest.approx(expected.tolist(), abs=1e-6)
 
 
@@ -159,6 +160,23 @@ def test_eyes_turn_in_the_head_and_lie_on_their_sides(face, avatar):
         turn = mirror @ Rotation.from_quat(sent[name][3:]).as_matrix() @ mirror
         np.testing.assert_allclose(turn, face.geometry.eye_rotations[side], atol=1e-5)
     assert sent["LeftEye"][0] < 0.0 < sent["RightEye"][0], "its left is at -X"
+
+
+@pytest.mark.parametrize("names", NAMES)
+def test_eyes_turn_by_bones_or_by_shapes_not_by_both(face, avatar, names):
+    face.set_gaze(10.0, 6.0, fade=0.0)
+    face.step(0.1)
+    looks = {}
+    for eyes in EYES:
+        sent = weights(face, avatar, names=names, eyes=eyes)
+        looks[eyes] = sum(value for name, (value,) in sent.items() if "look" in name.lower())
+    assert looks["bones"] == 0.0
+    assert looks["shapes"] > 0.5
+    for name in ("LeftEye", "RightEye"):
+        assert bones(face, avatar, names=names, eyes="shapes")[name][3:].tolist() == [0.0, 0.0, 0.0, 1.0]
+        assert bones(face, avatar, names=names)[name][6] < 0.999
+    with pytest.raises(UnknownNameError, match="did you mean bones"):
+        VmcSender(face, "127.0.0.1", 1, eyes="bone")
 
 
 def test_the_loop_sends_each_frame(face, avatar):
