@@ -71,11 +71,8 @@ class SegmentHearing:
     def _with_words(self, heard: Sequence[Phone], segment: SoundSegment) -> tuple[Phone, ...]:
         """Words, timed inside by what is heard, and what is heard where there are none."""
         now = segment.given / self._rate_hz
-        near = [
-            word
-            for word in sorted(segment.words, key=_start)
-            if now - _LONG_AGO_S <= word.start_s <= now + _MOST_AHEAD_S
-        ]
+        first, last = now - _LONG_AGO_S, now + _MOST_AHEAD_S
+        near = sorted((word for word in segment.words if first <= word.start_s <= last), key=attrgetter("start_s"))
         told: list[Phone] = []
         for word, after in zip_longest(near, near[1:]):
             phones = phones_of_words([with_end(word, after, heard)], self._lookup)

@@ -38,7 +38,7 @@ def fitted(phones: Sequence[Phone], heard: Sequence[Phone]) -> list[Phone]:
     near = [phone for phone in heard if phone.end_s > start and phone.start_s < end]
     if len(phones) < 2 or frames < 2 * len(phones) or not near:
         return list(phones)
-    times = start + (np.arange(frames) + 0.5) * _FRAME_S
+    times: Doubles = np.asarray(start + (np.arange(frames) + 0.5) * _FRAME_S, np.float64)
     at = np.searchsorted([phone.end_s for phone in near], times, side="right")
     sounds = [_viseme(near[place].symbol) if place < len(near) else None for place in at]
     scores = np.array([_score(phone, times, sounds) for phone in phones])
