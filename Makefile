@@ -15,11 +15,18 @@ debian = if [ "$$(id -u)" = 0 ] && command -v apt-get >/dev/null; \
 	echo "    sudo apt-get install --no-install-recommends $(1)"; exit 1; fi
 
 # programs and libraries that the voices and tests need, and the Debian packages that bring them; as in tests/tools.py
-TOOLS := xvfb-run:xvfb xauth:xauth xdotool:xdotool xprop:x11-utils oscsend:liblo-tools oscdump:liblo-tools node:nodejs npm:npm flite:flite
+TOOLS := xvfb-run:xvfb xauth:xauth xdotool:xdotool xprop:x11-utils oscsend:liblo-tools oscdump:liblo-tools node:nodejs npm:npm flite:flite chromium:chromium
 LIBRARIES := libespeak-ng.so.1:libespeak-ng1
+# what only the tests that take minutes need
+SOAK_TOOLS := blender:blender
+soak: TOOLS += $(SOAK_TOOLS)
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test lint quick soak frameworks matrix docs build clean opengl voice tools warm
+# the page of agentface/io/web: what npm brings and makes of it is not in the repository
+PAGE := agentface/io/web/page
+BUNDLE := $(PAGE)/dist/agentface.js
+
+.PHONY: help demo test lint quick soak frameworks matrix docs build clean opengl voice tools warm page
 
 help: ## this list
 	@sed -n 's/^\([a-z]*\):.*## /make \1\t/p' $(MAKEFILE_LIST) | expand -t 14
@@ -41,7 +48,7 @@ lint: $(INSTALLED)
 	@$(BIN)/ruff format --check $(CODE)
 	@$(BIN)/mypy
 
-test: $(INSTALLED) opengl tools lint warm ## ruff, mypy, all tests but the soaking ones, and how much of the code they ran
+test: $(INSTALLED) opengl tools page lint warm ## ruff, mypy, all tests but the soaking ones, and how much of the code they ran
 	@rm -rf $(dir $(COVERED)) && mkdir -p $(dir $(COVERED))
 	@$(BIN)/coverage run -m pytest $(PARALLEL)
 	@# a child whose disk was full, which is what some tests are about, has left a file that cannot be read
@@ -59,10 +66,10 @@ warm: $(INSTALLED)
 quick: $(INSTALLED) opengl lint ## a verdict within a minute: ruff, mypy and the tests that are not slow
 	@$(BIN)/pytest -q $(PARALLEL) -m "not slow and not soak"
 
-soak: $(INSTALLED) opengl tools ## the tests that take minutes
+soak: $(INSTALLED) opengl tools page ## the tests that take minutes
 	@$(BIN)/pytest $(PARALLEL) -m soak --timeout 3600
 
-matrix: $(INSTALLED) opengl tools ## all tests on every Python that is found, and once with the lowest versions of the libraries
+matrix: $(INSTALLED) opengl tools page ## all tests on every Python that is found, and once with the lowest versions of the libraries
 	@$(BIN)/python tests/matrix.py $(PARALLEL)
 
 # about 850 MB; aiavatarkit without what it needs, torch among it: only its module of faces is loaded
@@ -81,10 +88,17 @@ docs: $(INSTALLED) ## the documents and the reference as a site, into out/site/
 	@PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/zensical build --clean --strict
 	@printf 'open out/site/index.html\n'
 
-build: $(INSTALLED) ## the wheel and the source archive, into dist/
+build: $(INSTALLED) page ## the wheel and the source archive, into dist/
 	@$(BIN)/python -m build --no-isolation
 
+page: $(BUNDLE) ## what a browser shows the face with; serve --web needs it
+
+$(BUNDLE): $(PAGE)/package-lock.json $(PAGE)/build.mjs $(wildcard $(PAGE)/*.html $(PAGE)/src/*.js)
+	@command -v npm >/dev/null || { $(call debian,nodejs npm); }
+	@cd $(PAGE) && npm ci --no-audit --no-fund --ignore-scripts --loglevel=error && npm run --silent build
+
 clean: ## remove everything that the other targets made
+	rm -rf $(PAGE)/dist $(PAGE)/node_modules
 	rm -rf $(VENV) $(FRAMEWORKS) out dist build .cache .pytest_cache .mypy_cache .ruff_cache .hypothesis .benchmarks
 	find $(CODE) -name __pycache__ -prune -exec rm -rf {} +
 

@@ -20,6 +20,7 @@ COMMANDS = (
     "play",
     "say",
     "convert",
+    "export",
     "explain",
     "check",
     "unwrap",

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable
 from concurrent.futures import Future
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -11,55 +11,27 @@ from typing import TYPE_CHECKING, Any, NoReturn, Self
 
 import numpy as np
 
-from agentface.bml.block import Block
+from agentface.calls.expression_calls import ExpressionCalls
+from agentface.calls.movement_calls import MovementCalls
+from agentface.calls.speech_calls import SpeechCalls
+from agentface.calls.twins import AwaitableTwins
 from agentface.clock import Clock, SystemClock
 from agentface.conventions import Bytes, check_duration
 from agentface.deform.geometry import FaceGeometry
 from agentface.deform.protocol import DEFAULT_DEFORMER, Deformer, make_deformer
 from agentface.emotion.explanation import Explanation
 from agentface.emotion.inference import default_inference
-from agentface.emotion.state import EMOTIONS, NEUTRAL, EmotionState, canonical_or_neutral
+from agentface.emotion.state import EMOTIONS, EmotionState
 from agentface.errors import InvalidValueError
 from agentface.events.events import Events
-from agentface.events.twins import AwaitableTwins
 from agentface.head.model import HeadModel, load_model
 from agentface.motion.doing import Doing
-from agentface.motion.emotion import Hold
 from agentface.motion.gestures.table import all_gestures
 from agentface.motion.mixer import Mixer
-from agentface.motion.performance import Performance
-from agentface.motion.stream import STREAM_FADE_S
 from agentface.parameters import CONTRACTIONS, HELD, MUSCLES, FacePose
-from agentface.requests import (
-    FADE_S,
-    GAZE_FADE_S,
-    HEAD_FADE_S,
-    Blink,
-    Gesture,
-    Hush,
-    LookAt,
-    Neutral,
-    Play,
-    PlayBlock,
-    Request,
-    Say,
-    SetActionUnit,
-    SetArkit,
-    SetEmotion,
-    SetEmotions,
-    SetFaps,
-    SetGaze,
-    SetHead,
-    SetLiveliness,
-    SetMood,
-    SetMuscle,
-    SetParameter,
-    SetState,
-    ShowViseme,
-    Speak,
-)
+from agentface.requests import Request, SetLiveliness
 from agentface.resources import DEFAULT_FACE
-from agentface.speech.phones import Phone
+from agentface.talk.agendas import Agendas
 from agentface.talk.blocks import BlockPlayer
 from agentface.talk.talker import Talker
 
@@ -75,7 +47,7 @@ class MessageCounts:
     errors: dict[str, int] = field(default_factory=lambda: dict.fromkeys(("malformed", "unknown", "rejected"), 0))
 
 
-class Face(AwaitableTwins):
+class Face(ExpressionCalls, MovementCalls, SpeechCalls, AwaitableTwins):
     """A face that shows what it is told.
 
     Args:
@@ -116,6 +88,8 @@ class Face(AwaitableTwins):
         self.message_counts = MessageCounts()
         self.noted: list[Callable[[Request], None]] = []
         """Called with every request after it was applied: who steps a face again later notes them here."""
+        self.reports: dict[str, Callable[[], object]] = {}
+        """What the status has beside its own, by key: links to other programs tell of themselves here, JSON-ready."""
         self._events = Events(self)
         self._clock = clock or SystemClock()
         self._inference = default_inference(compiled=compiled)
@@ -126,11 +100,11 @@ class Face(AwaitableTwins):
             random=self.random.spawn(1)[0],
             gestures=all_gestures(gestures),
         )
+        self._events.follow(self.channels)
         SetLiveliness(liveliness, 0.0).apply(self)
         self._deformer = make_deformer(deformer, self.model, compiled=compiled)
         self._renderer: Renderer | None = None
-        self._talker: Talker | None = None
-        self._blocks: BlockPlayer | None = None
+        self._agendas = Agendas()
         self._look = look
         self._closed = False
         self._pose: FacePose | None = None
@@ -161,191 +135,17 @@ class Face(AwaitableTwins):
         return self._events.ask(request)
 
     def on(self, event: str, call: Callable[[Any], object]) -> None:
-        """Call ``call``, after a step, whenever something is over; one of ``EVENTS``, raises UnknownNameError.
+        """Call ``call``, after a step, whenever something has happened; one of ``EVENTS``, raises UnknownNameError.
 
         ``spoken``: a text that was said; ``hushed``: one that was cut short; ``failed``: what went wrong with one, an
-        AgentFaceError; ``gestured``: a gesture's name; ``played``: a performance.
+        AgentFaceError; ``gestured``: a gesture's name; ``played``: a performance; ``reached``: the emotions that the
+        face has come to, an EmotionState; ``blink``: how far one closes the eyes, 0..1.
         """
         self._events.on(event, call)
 
     def off(self, event: str, call: Callable[[Any], object]) -> None:
         """No longer call what was given to :meth:`on`."""
         self._events.off(event, call)
-
-    def set_emotion(
-        self,
-        emotion: str | Mapping[str, float],
-        intensity: float | None = None,
-        *,
-        fade: float | None = None,
-        hold: Hold = None,
-    ) -> None:
-        """Show one emotion at ``intensity`` 0..1 beside the others, or, given a mapping, exactly this state.
-
-        The face gets there in ``fade`` seconds, or at each emotion's own pace. With ``hold`` it goes back to the mood
-        after so many seconds, or with ``own`` after as many as are that emotion's.
-        ``neutral`` lets go of the emotions alone: at an intensity below 1, or in a mapping, it leaves each of them at
-        most 1 minus that; by itself it needs no intensity.
-        """
-        if not isinstance(emotion, Mapping):
-            if intensity is None and canonical_or_neutral(emotion) == NEUTRAL:
-                intensity = 1.0
-            self.apply(SetEmotion(emotion, intensity, fade, hold))  # type: ignore[arg-type]  # refuses None itself
-            return
-        if intensity is not None:
-            raise InvalidValueError("intensity", "none beside a mapping, which has its own", intensity)
-        self.apply(SetEmotions(EmotionState.of(emotion), fade, hold))
-
-    def set_mood(self, mood: Mapping[str, float] | None = None, *, fade: float | None = None) -> None:
-        """Have a mood, to which brief expressions and ``neutral`` return: a state of emotions, {} or None for none."""
-        self.apply(SetMood(EmotionState.of(mood), fade))
-
-    def neutral(self, fade: float = FADE_S) -> None:
-        """Let go of everything, emotions (back to the mood), single muscles, jaw, gaze and head."""
-        self.apply(Neutral(fade))
-
-    def set_muscle(self, name: str, contraction: float | None, *, fade: float = FADE_S) -> None:
-        """Hold a muscle (both sides where ``name`` has none) at 0..1, whatever else moves it; None releases it."""
-        self.apply(SetMuscle(name, contraction, fade))
-
-    def set_parameter(self, name: str, value: float | None, *, fade: float = FADE_S) -> None:
-        """Set any one parameter in its unit; an angle in radians, or in degrees with ``_deg`` after its name.
-
-        None releases it: a muscle goes back to the emotions, an angle to 0.
-        """
-        self.apply(SetParameter(name, value, fade))
-
-    def set_action_unit(
-        self, number: int, intensity: float | str, *, side: str | None = None, fade: float = FADE_S
-    ) -> None:
-        """Show an action unit of FACS at 0..1, or at a letter A to E, on both sides, or on ``left`` or ``right``."""
-        self.apply(SetActionUnit(number, intensity, side, fade))  # type: ignore[arg-type]  # takes letters, keeps numbers
-
-    def set_faps(
-        self,
-        faps: Mapping[int, float],
-        *,
-        viseme: Sequence[int] | None = None,
-        expression: Sequence[int] | None = None,
-        fade: float = STREAM_FADE_S,
-    ) -> None:
-        """Show a frame of MPEG-4 FAPs by number 3..68, in their units; what it does not name is left to others.
-
-        ``viseme`` has the four fields of FAP 1, ``expression`` the six of FAP 2. Half a second after the last frame
-        the face lets go of it.
-        """
-        self.apply(SetFaps(faps, viseme, expression, fade))  # type: ignore[arg-type]  # takes what it makes tuples of
-
-    def set_arkit(self, weights: Mapping[str, float], *, fade: float = STREAM_FADE_S) -> None:
-        """Show some of ARKit's 52 face weights, 0..1 by name, beside those that are still shown.
-
-        Half a second after the last ones the face lets go of them.
-        """
-        self.apply(SetArkit(weights, fade))  # type: ignore[arg-type]  # takes what it makes tuples of
-
-    def set_jaw(self, opening: float | None, *, fade: float = FADE_S) -> None:
-        """Hold the jaw open at 0..1 of its widest opening; None releases it."""
-        self.apply(SetMuscle("jaw_open", opening, fade))
-
-    def set_gaze(self, yaw_deg: float, pitch_deg: float, *, fade: float = GAZE_FADE_S) -> None:
-        """Look ``yaw_deg`` to the person's left (-50..50) and ``pitch_deg`` up (-40..40); a saccade by default."""
-        self.apply(SetGaze(yaw_deg, pitch_deg, fade))
-
-    def look_at(self, point: Sequence[float], *, fade: float | None = None) -> None:
-        """Look at a point, each eye exactly: x, y, z in metres in the model's axes, where the head is not turned.
-
-        It is looked at until the gaze is told otherwise, whatever turns the head; the head joins the eyes for what is
-        far aside. The eyes take ``fade`` seconds, those of a leap so far when None. Raises InvalidValueError for a
-        point that is not in front of the eyes.
-        """
-        self.apply(LookAt.of(point, fade))
-
-    def set_head(self, yaw_deg: float, pitch_deg: float, roll_deg: float = 0.0, *, fade: float = HEAD_FADE_S) -> None:
-        """Turn the head to its left (-80..80), up (-60..60), and tilt it to its left (-50..50)."""
-        self.apply(SetHead(yaw_deg, pitch_deg, roll_deg, fade))
-
-    def play(self, performance: Performance | None, *, fade: float = 0.0) -> None:
-        """Play poses over time from now on, and let go when they end; None ends the one that is played.
-
-        With a fade of 0 every frame is hit exactly; else the face comes to it from what it shows in ``fade`` seconds.
-        """
-        self.apply(Play(performance, fade))
-
-    def play_block(self, block: Block) -> None:
-        """Play a BML block, as :func:`agentface.io.bml.reader.read_bml` reads it; what it says, once it is spoken.
-
-        Raises InvalidValueError for one whose id plays or waits already, and when too many wait.
-        """
-        self.apply(PlayBlock(block))
-
-    def speak(
-        self,
-        visemes: Iterable[Phone | Sequence[Any]],
-        *,
-        start: float = 0.0,
-        rate: float = 1.0,
-        loudness: float = 1.0,
-        interrupt: bool = False,
-        live: bool = False,
-        alphabet: str | None = None,
-    ) -> None:
-        """Move the mouth as for these sounds: name, start and end in seconds, names in any alphabet of ``phones.yaml``.
-
-        Times count from ``start`` seconds after now, or after what is said already; ``interrupt`` says these instead.
-        ``live``: more will come; times count from now, and the newest say wins from its first sound on.
-        """
-        self.apply(Speak.of(visemes, start, rate, loudness, interrupt, live, alphabet))
-
-    def hush(self) -> None:
-        """Say no more, now."""
-        self.apply(Hush())
-
-    def show_viseme(self, name: str, weight: float, duration: float | None = None) -> None:
-        """Show a viseme at 0..1 beside others, for ``duration`` seconds, or until it is set to 0 or :meth:`hush`."""
-        self.apply(ShowViseme(name, weight, duration))
-
-    def blink(self) -> None:
-        """Blink once."""
-        self.apply(Blink())
-
-    def gesture(self, name: str, strength: float = 1.0) -> None:
-        """Nod, shake, tilt, ...: a gesture of ``rules/gestures.yaml``, at ``strength`` 0..1."""
-        self.apply(Gesture(name, strength))
-
-    def set_liveliness(self, liveliness: float, *, fade: float | None = None) -> None:
-        """Blink, look about, sway and breathe between messages: 0, perfectly still, .. 1; 0.6 is natural.
-
-        In ``fade`` seconds, those of ``rules/life.yaml`` when None.
-        """
-        self.apply(SetLiveliness(liveliness, fade))
-
-    def set_state(self, state: str | None) -> None:
-        """What it lives for: ``idle``, ``listening``, ``thinking`` or ``speaking``.
-
-        None, as at first: ``speaking`` while the face speaks, and ``idle`` otherwise.
-        """
-        self.apply(SetState(state))
-
-    def say(
-        self,
-        text: str,
-        *,
-        voice: str | None = None,
-        language: str = "en",
-        rate: float = 1.0,
-        interrupt: bool = False,
-        wait: bool = False,
-    ) -> None:
-        """Say a text, sentence by sentence, when its turn has come; ``interrupt``: in place of what is said now.
-
-        Emotions in brackets, as in ``[joy] Hello, [surprise:0.5] you``, are shown at their words. The text is spoken
-        in the background and begins with the step that finds its first sentence ready; ``wait`` until all of it is, as
-        in a program that steps faster than time passes, and it begins with the next one. What goes wrong in the
-        background is told to ``talker.failed``; that of a text or voice is raised: InvalidValueError, UnknownNameError.
-        """
-        self.apply(Say(text, voice, language, rate, interrupt))
-        if wait:
-            self.talker.wait()
 
     def step(self, dt: float) -> FaceGeometry:
         """Let ``dt`` seconds pass, and return the face as it is then.
@@ -355,7 +155,7 @@ class Face(AwaitableTwins):
         dt = check_duration("dt", dt)
         start = self._clock.now()
         self._events.take_in()
-        self._advance(dt)
+        self._agendas.advance(dt, self.channels.advance)
         self._touch()
         geometry = self._deformer.step(self.pose, dt)
         self._stepped = self.pose, geometry
@@ -377,31 +177,18 @@ class Face(AwaitableTwins):
     @property
     def talker(self) -> Talker:
         """What has texts said, and tells when each is heard."""
-        if self._talker is None:
-            self._talker = Talker(self)
-            self.noted.append(self._talker.notice)
-        return self._talker
+        if self._agendas.talker is None:
+            self._agendas.talker = Talker(self)
+            self.noted.append(self._agendas.talker.notice)
+        return self._agendas.talker
 
     @property
     def blocks(self) -> BlockPlayer:
         """What plays BML blocks, and tells how far they are."""
-        if self._blocks is None:
-            self._blocks = BlockPlayer(self)
-            self.noted.append(self._blocks.notice)
-        return self._blocks
-
-    def _advance(self, dt: float) -> None:
-        agendas = [agenda for agenda in (self._blocks, self._talker) if agenda is not None]
-        for agenda in agendas:
-            agenda.advance(0.0)
-        while agendas and (part := min(agenda.due_s for agenda in agendas)) < dt:
-            self.channels.advance(part)
-            for agenda in agendas:
-                agenda.advance(part)
-            dt -= part
-        self.channels.advance(dt)
-        for agenda in agendas:
-            agenda.advance(dt)
+        if self._agendas.blocks is None:
+            self._agendas.blocks = BlockPlayer(self)
+            self.noted.append(self._agendas.blocks.notice)
+        return self._agendas.blocks
 
     @property
     def deformer(self) -> Deformer:
@@ -489,10 +276,7 @@ class Face(AwaitableTwins):
         """Give back what the face has taken from the graphics driver, and end its voices. May be called twice."""
         self._closed = True
         self._events.close()
-        if self._talker is not None:
-            self._talker.close()
-        if self._blocks is not None:
-            self._blocks.close()
+        self._agendas.close()
         renderer, self._renderer = self._renderer, None
         if renderer is not None:
             renderer.close()
@@ -521,7 +305,8 @@ class Face(AwaitableTwins):
         targets of those that are set; ``drivers``, the parameters that each channel moves; ``state`` and
         ``liveliness``; ``speech``, null while the face does not speak, else the ``phone``, null in a pause,
         ``ends_in_s`` and how many utterances are ``waiting``; ``gaze_deg``, yaw and pitch; ``frame_ms``, what the last
-        step took; ``messages`` understood; ``errors``, the count of malformed, unknown and rejected ones.
+        step took; ``messages`` understood; ``errors``, the count of malformed, unknown and rejected ones; and what
+        ``reports`` tell.
         """
         emotion, pose = self.channels.emotion, self.pose
         shown = zip(emotion.target, emotion.intensities.tolist(), strict=True)
@@ -543,6 +328,7 @@ class Face(AwaitableTwins):
             "frame_ms": round(self._frame_ms, 3),
             "messages": self.message_counts.messages,
             "errors": dict(self.message_counts.errors),
+            **{name: report() for name, report in self.reports.items()},
         }
 
     def _touch(self) -> None:

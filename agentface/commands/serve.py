@@ -12,6 +12,7 @@ import click
 
 from agentface.commands.ending import Ending, until_told
 from agentface.commands.film import Shot
+from agentface.commands.links import Links
 from agentface.commands.options import (
     address,
     camera_option,
@@ -21,10 +22,11 @@ from agentface.commands.options import (
     liveliness_option,
     look_option,
     make_face,
-    optional_address,
     size_option,
 )
+from agentface.commands.pages import PagesAsked, served_pages, web_options
 from agentface.commands.streams import say, tell
+from agentface.commands.vmc import VmcOptions, check_vmc, vmc_links, vmc_options
 from agentface.resources import DEFAULT_FACE
 
 if TYPE_CHECKING:
@@ -32,9 +34,8 @@ if TYPE_CHECKING:
 
     from agentface.face import Face
     from agentface.io.osc.server import OscServer
-    from agentface.io.web.server import WebServer
+    from agentface.live.loop import Sink, Source
 
-_WEB = "Serve a page with the face, such as 127.0.0.1:8080; needs the extra web."
 _RECORD = "Film the face; a name like face-%05d.png gives numbered transparent pictures instead."
 
 
@@ -42,13 +43,8 @@ _RECORD = "Film the face; a name like face-%05d.png gives numbered transparent p
 @click.option(
     "--osc", default="127.0.0.1:7400", callback=address, metavar="HOST:PORT", show_default=True, help="Where to listen."
 )
-@click.option("--web", callback=optional_address, metavar="HOST:PORT", help=_WEB)
-@click.option(
-    "--token", metavar="TOKEN", help="What --web asks of everyone; beyond this machine one is made if not given."
-)
-@click.option(
-    "--allow-origin", "origins", multiple=True, metavar="URL", help="A web site whose pages may ask --web, too."
-)
+@vmc_options
+@web_options
 @click.option("--view", type=click.Choice(["window", "none"]), default="none", show_default=True)
 @click.option("--record", type=click.Path(path_type=Path), metavar="FILE.mp4", help=_RECORD)
 @click.option(
@@ -79,9 +75,8 @@ def serve(
     ctx: click.Context,
     *,
     osc: tuple[str, int],
-    web: tuple[str, int] | None,
-    token: str | None,
-    origins: tuple[str, ...],
+    vmc: VmcOptions,
+    pages: PagesAsked | None,
     view: str,
     record: Path | None,
     every_frame: bool,
@@ -103,42 +98,46 @@ def serve(
     \b
     agentface serve --view window
     agentface serve --face amber --id left --face onyx --id right
+    agentface serve --vmc 127.0.0.1:39539 --vmc-in 127.0.0.1:39540
     """  # noqa: D301 - \b is click's mark of lines to keep
     _check_options(
         given(ctx),
         window=view == "window",
         record=record is not None,
         several=len(names) > 1,
-        web=web is not None,
+        web=pages is not None,
     )
     _check_ids(names, ids)
+    check_vmc(given(ctx), vmc)
     from agentface.io.osc.server import OscServer
 
     made = [
         make_face(name, deformer, look=look, running=True, liveliness=liveliness, seed=seed)
         for seed, name in enumerate(names)
     ]
-    faces = _by_id(made, ids)
+    faces = vmc.first(_by_id(made, ids))
+    name = next(iter(faces))
     rate = fps or (30.0 if record else 60.0)
     with (
         until_told() as ending,
         OscServer(faces if ids or len(made) > 1 else made[0], *osc) as server,
+        vmc_links(name, faces[name], vmc) as links,
         _heard(faces),
-        _in_pages(faces, web, token, origins, deformer, look, rate) as pages,
+        served_pages(faces, pages, deformer, look, rate, links),
     ):
         if view == "window":
-            _in_a_window(server, faces, ending, look, quality, camera)
+            _in_a_window(server, links, faces, ending, look, quality, camera)
             return
         end = duration or math.inf
         if record is None:
-            _run(server, faces, ending, rate, end, pages)
+            _run(server, links, faces, ending, rate, end)
             return
         shot = Shot(record, size, camera, quality or "fast", rate, look, live=True)
         if every_frame:
             again = make_face(names[0], deformer, look=look, liveliness=liveliness)
-            _film_later(server, faces, ending, shot, end, again)
+            _film_later(server, links, faces, ending, shot, end, again)
         else:
-            _film_now(server, faces, ending, shot, end)
+            _film_now(server, links, faces, ending, shot, end)
 
 
 def _check_options(names: set[str], *, window: bool, record: bool, several: bool, web: bool) -> None:
@@ -153,8 +152,6 @@ def _check_options(names: set[str], *, window: bool, record: bool, several: bool
         ("every_frame", "--record", record),
         ("size", "--record", record),
         ("look", "--view window, --record or --web", window or record or web),
-        ("web", "--view none", not window),
-        ("web", "no --record", not record),
         ("token", "--web", web),
         ("origins", "--web", web),
         ("quality", "--view window or --record", window or record),
@@ -204,9 +201,10 @@ def _heard(faces: Mapping[str, Face]) -> Iterator[None]:
         yield
 
 
-def _announce(faces: Mapping[str, Face], server: OscServer) -> None:
+def _announce(faces: Mapping[str, Face], server: OscServer, links: Links) -> None:
     called = [name if name == face.model.name else f"{name} ({face.model.name})" for name, face in faces.items()]
     say(f"{' and '.join(called)} listen{'s' * (len(called) == 1)} to OSC on {server.host}:{server.port}")
+    links.announce()
 
 
 def _only(faces: Mapping[str, Face]) -> Face:
@@ -215,71 +213,66 @@ def _only(faces: Mapping[str, Face]) -> Face:
 
 
 def _in_a_window(
-    server: OscServer, faces: Mapping[str, Face], ending: Ending, look: str | None, quality: str | None, camera: str
+    server: OscServer,
+    links: Links,
+    faces: Mapping[str, Face],
+    ending: Ending,
+    look: str | None,
+    quality: str | None,
+    camera: str,
 ) -> None:
     from agentface.commands.show import make_window
 
     window = make_window(_only(faces), look=look, quality=quality, camera=camera)
-    _announce(faces, server)
-    window.run([server], stopped=ending.told)
-
-
-@contextmanager
-def _in_pages(
-    faces: Mapping[str, Face],
-    web: tuple[str, int] | None,
-    token: str | None,
-    origins: Sequence[str],
-    deformer: str,
-    look: str | None,
-    fps: float,
-) -> Iterator[list[WebServer]]:
-    """A server of pages, if one is asked for."""
-    if web is None:
-        yield []
-        return
-    from agentface.io.web.server import WebServer
-
-    with WebServer(
-        faces, *web, token=token, origins=origins, deformer=deformer, look=look, fps=fps, told=tell
-    ) as server:
-        for line in (f"the page is {server.url}", *server.access.told("it")):
-            say(line)
-        yield [server]
+    _announce(faces, server, links)
+    window.run([server, *links.sources], links.sinks, stopped=ending.told)
 
 
 def _run(
     server: OscServer,
+    links: Links,
     faces: Mapping[str, Face],
     ending: Ending,
     fps: float,
     duration: float,
-    pages: Sequence[WebServer],
 ) -> None:
     from agentface.clock import SystemClock
     from agentface.live.loop import run
 
     face, *beside = faces.values()
-    _announce(faces, server)
-    run(face, SystemClock(), [server, *pages], pages, fps=fps, duration=duration, stopped=ending.told, beside=beside)
+    _announce(faces, server, links)
+    sources = [server, *links.sources]
+    run(face, SystemClock(), sources, links.sinks, fps=fps, duration=duration, stopped=ending.told, beside=beside)
 
 
-def _film_now(server: OscServer, faces: Mapping[str, Face], ending: Ending, shot: Shot, duration: float) -> None:
+def _film_now(
+    server: OscServer, links: Links, faces: Mapping[str, Face], ending: Ending, shot: Shot, duration: float
+) -> None:
     from agentface.clock import SystemClock
+    from agentface.io.video import SOUND_HZ
+    from agentface.live.heard import LiveSound
     from agentface.live.loop import run
     from agentface.live.newest import LiveSink
 
-    face = _only(faces)
-    with LiveSink(lambda: shot.open(face.model, duration if math.isfinite(duration) else None)) as film:
-        _announce(faces, server)
-        frames = run(face, SystemClock(), [server], [film], fps=shot.fps, duration=duration, stopped=ending.told)
+    face, last_s = _only(faces), duration if math.isfinite(duration) else None
+    with LiveSound(face, SOUND_HZ) as sound, LiveSink(lambda: shot.open(face.model, last_s, sound)) as film:
+        _announce(faces, server, links)
+        sources: list[Source] = [server, *links.sources]
+        sinks: list[Sink] = [sound, film, *links.sinks]
+        frames = run(face, SystemClock(), sources, sinks, fps=shot.fps, duration=duration, stopped=ending.told)
     if film.dropped:
         lost = f"{film.dropped} of {frames} frames are left out, as this machine draws too slowly for them"
         tell(f"{shot.path}: {lost}; --every-frame films all of them")
 
 
 def _film_later(
-    server: OscServer, faces: Mapping[str, Face], ending: Ending, shot: Shot, duration: float, again: Face
+    server: OscServer,
+    links: Links,
+    faces: Mapping[str, Face],
+    ending: Ending,
+    shot: Shot,
+    duration: float,
+    again: Face,
 ) -> None:
     """As :func:`_film_now`, but ``again``, a face like the first, goes through it all when it is over.
 
@@ -294,9 +287,10 @@ def _film_later(
     face = _only(faces)
     with shot.open(face.model):
         pass  # what cannot be written or drawn is told before the recording
-    _announce(faces, server)
+    _announce(faces, server, links)
     with Recorder(face) as recorder, HeardRecorder(face, recorder, shot.fps) as heard:
-        run(face, SystemClock(), [server], [recorder], fps=shot.fps, duration=duration, stopped=ending.told)
+        sources, sinks = [server, *links.sources], [recorder, *links.sinks]
+        run(face, SystemClock(), sources, sinks, fps=shot.fps, duration=duration, stopped=ending.told)
     if recorder.last_s is None:
         return
     ending.go_on()  # told to stop again, it keeps what is drawn

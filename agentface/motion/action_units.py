@@ -18,13 +18,13 @@ class ActionUnitChannel:
     shown.
     """
 
-    def __init__(self, units: dict[int, ActionUnit] | None = None) -> None:
+    def __init__(self, units: dict[int, ActionUnit] | None = None, *, compiled: bool = False) -> None:
         self._units = action_units() if units is None else units
         self._numbers = list(self._units)
         touched = {index for unit in self._units.values() for name in unit.parts for index in indices_of(name)}
         self._places = np.array(sorted(touched), np.intp)
         self.names = tuple(NAMES[place] for place in self._places)
-        self._levels = Envelope(len(SIDES) * len(self._numbers))
+        self._levels = Envelope(len(SIDES) * len(self._numbers), compiled=compiled)
         known = [PARAMETERS[place] for place in self._places]
         self._contracts = np.array([parameter.contracts for parameter in known])
         self._parts = np.zeros((len(self._numbers), len(SIDES), len(known)))

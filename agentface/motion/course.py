@@ -1,8 +1,7 @@
 """The contractions that the rules make of intensities on their way, as a course without corners.
 
 The rules are asked at even ticks of time. They have corners, where one rule takes over from another; so what is shown
-between two ticks is a spline of the last ``TICKS`` answers: a running mean of three under a quadratic B-spline. It
-never leaves the range of the answers, its speed has no jumps, and it does not depend on when frames are drawn.
+between two ticks is a spline of the last answers (:mod:`.answers`).
 """
 
 from __future__ import annotations
@@ -15,17 +14,15 @@ import numpy as np
 import numpy.typing as npt
 
 from agentface.conventions import Doubles
-from agentface.emotion.state import EMOTIONS
+from agentface.motion.answers import LATE, TICKS, Answers
 from agentface.motion.intensities import Intensities
 from agentface.motion.modes import ModeMean
 from agentface.motion.pairs import Pairs
 from agentface.parameters import MUSCLES
 
 TICK_S = 1.0 / 120.0
-TICKS = 5
 LAG_S = TICKS * TICK_S
 """So long after the intensities the contractions are where they go."""
-LATE = 4
 LATE_S = LATE * TICK_S
 """So much later :attr:`Course.late` shows the same."""
 _NEARLY = 1e-6
@@ -66,11 +63,9 @@ class Course:
         self._pairs, self._held_back = pairs, held_back
         self.settled = True
         self._turned = self._rewritten = False
-        self._states = np.zeros((TICKS + LATE, len(EMOTIONS)))
-        self._answers = np.zeros((TICKS + LATE, len(MUSCLES)))
-        self._spline = np.zeros(TICKS)
+        self._answers = Answers(compiled=rules.compiled)
         self._asked, self._start, self._target, self._shown = (np.zeros(len(MUSCLES)) for _ in range(4))
-        self._late, self._late_from = np.zeros(len(MUSCLES)), 0.0
+        self._late, self._late_from, self._is_late = np.zeros(len(MUSCLES)), 0.0, False
         self._origin = self._now = self._until = 0.0
         self._tick = 0
 
@@ -84,8 +79,7 @@ class Course:
     @property
     def late(self) -> Doubles:
         """``(len(MUSCLES),)``, what they were ``LATE_S`` ago."""
-        late: Doubles = self._target if self.settled else self._spline @ self._answers[:TICKS]
-        return late
+        return self._target if self.settled else self._answers.at(self._part, late=True)
 
     def takes_over(self, now: float, places: npt.NDArray[np.intp], levels: Doubles) -> bool:
         """Whether other modes take over where the intensities at ``places`` go to ``levels``."""
@@ -104,7 +98,7 @@ class Course:
             self._origin, self._tick, self.settled = now, 0, False
         self._turned = True
         if at_once.size:
-            self._states[:, at_once] = self._intensities.target[at_once]
+            self._answers.states[:, at_once] = self._intensities.target[at_once]
             self._rewritten = True
 
     def advance(self, now: float) -> None:
@@ -118,27 +112,22 @@ class Course:
         new = min(tick - self._tick, self._modes.most)
         self._tick = tick
         if new:
-            self._ask(self._origin + TICK_S * np.arange(tick - new + 1.0, tick + 1.0))
-        if (self._answers == self._target).all() and (self._states == self._intensities.target).all():
-            self._settle()
-        else:
-            self._show()
+            self._ask(np.array([self._origin + TICK_S * number for number in range(tick - new + 1, tick + 1)]))
+        self._show()
 
     def _ask(self, times: Doubles) -> None:
         """What the rules say at the newest ticks, less what pairs of muscles hold back."""
         states = self._intensities.at(times)[0]
-        kept = len(self._answers)
-        modes = self._modes.means(times, self._rules.weights(states))[-kept:]
-        states, times = states[-kept:], times[-kept:]
-        asked = self._rules.course(states, modes)
+        modes = self._modes.means(times, self._rules.weights(states))
+        kept = slice(-(TICKS + LATE), None)
+        asked, times = self._rules.course(states[kept], modes[kept]), times[kept]
         held = np.empty_like(asked)
         self._held_back(asked, self._start, self._target, self._pairs, held)
         span = self._until - self._late_from
-        if span > 0.0:
+        if span > 0.0 and self._is_late:
             held += self._late * np.maximum(self._until - times, 0.0)[:, None] / span
         self._asked = asked[-1]
-        _push(self._states, states)
-        _push(self._answers, np.minimum(np.maximum(asked - held, 0.0), asked))
+        self._answers.push(states, np.minimum(np.maximum(asked - held, 0.0), asked))
 
     def _aim(self) -> None:
         """Take in what is new: where the contractions go, and from where.
@@ -151,30 +140,20 @@ class Course:
         self._target = self._rules.course(self._intensities.target[None])[0]
         if self._rewritten:
             self._rewritten = False
-            self._answers[:] = self._rules.course(self._states)
-            self._asked = self._answers[-1].copy()
-        self._start = self._answers[-1].copy()
+            self._answers.contractions[:] = self._rules.course(self._answers.states)
+            self._asked = self._answers.contractions[-1].copy()
+        self._start = self._answers.contractions[-1].copy()
         held = np.empty((1, len(MUSCLES)))
         self._held_back(self._asked[None], self._start, self._target, self._pairs, held)
         self._late, self._late_from = self._asked - self._start - held[0], tick_at
-        if (self._answers == self._target).all() and (self._states == self._intensities.target).all():
-            self._settle()
-        else:
-            self._show()
+        self._is_late = bool(self._late.any())
+        self._show()
 
-    def _settle(self) -> None:
-        self.settled, self._shown = True, self._target
+    @property
+    def _part(self) -> float:
+        """How much of a tick has passed since the last."""
+        return min(max((self._now - self._origin) / TICK_S - self._tick, 0.0), 1.0)
 
     def _show(self) -> None:
-        part = min(max((self._now - self._origin) / TICK_S - self._tick, 0.0), 1.0)
-        old, new = 0.5 * (1.0 - part) ** 2, 0.5 * part**2
-        self._spline[:] = old, 0.5 + part - part**2 + old, 1.0, 0.5 + part - part**2 + new, new
-        self._spline /= 3.0
-        newest = self._answers[LATE:]
-        self._shown = self._target if (newest == self._target).all() else self._spline @ newest
-
-
-def _push(ring: Doubles, rows: Doubles) -> None:
-    """Put ``rows`` at the end of ``ring``, whose first ones fall out."""
-    new = len(rows)
-    ring[:-new], ring[-new:] = ring[new:].copy(), rows
+        self.settled = self._answers.are_all(self._intensities.target, self._target)
+        self._shown = self._target if self.settled else self._answers.at(self._part)

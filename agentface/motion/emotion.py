@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
-from typing import Literal, TypeAlias
+from typing import Literal, NamedTuple, TypeAlias
 
 import numpy as np
 
@@ -17,6 +17,7 @@ from agentface.motion.course import LAG_S, LATE_S, TICK_S, Course, EmotionRules
 from agentface.motion.intensities import Intensities, trace_in_numpy
 from agentface.motion.modes import LONGEST_S, ModeMean, mean_in_numpy
 from agentface.motion.pairs import Pairs, held_back_in_numpy
+from agentface.motion.sides import Sides, to_sides_in_numpy
 from agentface.parameters import MUSCLES, NAMES, indices_of
 
 Hold: TypeAlias = float | Literal["own"] | None
@@ -33,6 +34,7 @@ class EmotionChannel:
 
     Attributes:
         mood: what the intensities return to.
+        reached: called whenever the contractions are where they go.
         apart: how much the two sides of a pair are out of step, 0, not at all, .. 1, as the lags say.
     """
 
@@ -46,12 +48,14 @@ class EmotionChannel:
         lags_s: Mapping[str, float] | None = None,
     ) -> None:
         self._envelopes = envelopes or default_envelopes()
-        trace, mean, held_back = _kernels() if rules.compiled else (trace_in_numpy, mean_in_numpy, held_back_in_numpy)
-        self._intensities = Intensities(self._envelopes, trace)
-        modes = ModeMean(TICK_S, mean)
-        self._course = Course(rules, self._intensities, modes, pairs or default_conflicts().pairs, held_back)
+        loops = _kernels() if rules.compiled else _IN_NUMPY
+        self._to_sides = loops.to_sides
+        self._intensities = Intensities(self._envelopes, loops.trace)
+        modes = ModeMean(TICK_S, loops.mean)
+        self._course = Course(rules, self._intensities, modes, pairs or default_conflicts().pairs, loops.held_back)
         self.mood = EmotionState()
         self.apart = 0.0
+        self.reached: list[Callable[[], object]] = []
         self._now = 0.0
         self._shown = np.zeros(len(EMOTIONS), np.bool_)
         self._returns, self._next = np.full(len(EMOTIONS), math.inf), math.inf
@@ -59,10 +63,10 @@ class EmotionChannel:
         self._due = np.zeros(len(EMOTIONS))
         places = [(index, row) for row, muscle in enumerate(MUSCLES) for index in indices_of(muscle)]
         self.names = tuple(NAMES[index] for index, _ in places)
-        self._rows = np.array([row for _, row in places])
-        self._lates = np.array([(lags_s or {}).get(name, 0.0) for name in self.names]) / LATE_S
-        self._gains = (
-            np.ones(len(places)) if gains is None else gains[[index for index, _ in places]].astype(np.float64)
+        self._sides = Sides(
+            np.array([row for _, row in places], np.int32),
+            np.array([(lags_s or {}).get(name, 0.0) for name in self.names]) / LATE_S,
+            np.ones(len(places)) if gains is None else gains[[index for index, _ in places]].astype(np.float64),
         )
 
     @property
@@ -107,18 +111,20 @@ class EmotionChannel:
             self._now = max(self._next, self._now)
             self._course.advance(self._now)
             self._return(self._returns <= self._now, self._fades)
-        self._now = until
+        self._now, moved = until, not self._course.settled
         self._course.advance(until)
+        if moved and self._course.settled:
+            for tell in self.reached:
+                tell()
 
     def write(self, values: Doubles, weights: Doubles) -> bool:
         """The contractions now."""
         shown = self._course.shown
         if shown is None:
             return False
-        np.take(shown, self._rows, out=values)
-        if self.apart > 0.0 and not self._course.settled:
-            values += self.apart * self._lates * (self._course.late[self._rows] - values)
-        values *= self._gains
+        apart = 0.0 if self._course.settled else self.apart
+        late = self._course.late if apart > 0.0 else shown
+        self._to_sides(shown, late, apart, self._sides, values)
         return True
 
     def _return(self, which: np.ndarray, fades: float | Doubles) -> None:
@@ -153,9 +159,22 @@ class EmotionChannel:
         return np.where(np.isnan(self._fades[places]), own, self._fades[places])
 
 
-def _kernels() -> tuple[Callable[..., None], Callable[..., None], Callable[..., None]]:
+class _Loops(NamedTuple):
+    """What does the work."""
+
+    trace: Callable[..., None]
+    mean: Callable[..., None]
+    held_back: Callable[..., None]
+    to_sides: Callable[..., None]
+
+
+_IN_NUMPY = _Loops(trace_in_numpy, mean_in_numpy, held_back_in_numpy, to_sides_in_numpy)
+
+
+def _kernels() -> _Loops:
     from agentface.motion.intensities_compiled import trace
     from agentface.motion.modes_compiled import mean
     from agentface.motion.pairs_compiled import held_back
+    from agentface.motion.sides_compiled import to_sides
 
-    return trace, mean, held_back
+    return _Loops(trace, mean, held_back, to_sides)

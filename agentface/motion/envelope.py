@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
 from agentface.conventions import Doubles
-from agentface.motion.braking import braking, durations
+from agentface.kernel import can_compile
+from agentface.motion.braking import durations
+from agentface.motion.minimum_jerk import follow_in_numpy
 
-_ALMOST = 1.0 - 1e-9
-"""A move that is so far done is over: sums of frame times are not exact."""
 _MONOTONE = 2.5
 """A minimum-jerk path does not overshoot while its first speed is at most this times its mean speed."""
 
@@ -23,20 +24,27 @@ class Envelope:
     starts and ends at rest; the speed that a value has when a move begins is taken over and braked away by the path of
     the same family that begins and ends at 0. Values never leave ``low..high``, and end exactly on their target.
 
+    Args:
+        size: how many.
+        low: their least, one or one a value; ``high`` likewise.
+        compiled: whether a kernel takes them along their way; else numpy does.
+
     Attributes:
         value: ``(size,)`` float64, what is shown now.
         velocity: ``(size,)`` float64, its change a second.
         target: ``(size,)`` float64, where it goes.
     """
 
-    def __init__(self, size: int, low: npt.ArrayLike = 0.0, high: npt.ArrayLike = 1.0) -> None:
+    def __init__(
+        self, size: int, low: npt.ArrayLike = 0.0, high: npt.ArrayLike = 1.0, *, compiled: bool = False
+    ) -> None:
         self.low: Doubles = np.array(np.broadcast_to(low, size), np.float64)
         self.high: Doubles = np.array(np.broadcast_to(high, size), np.float64)
         self.value, self.velocity, self.target = (np.zeros(size) for _ in range(3))
         self._start, self._speed = np.zeros(size), np.zeros(size)
         self._travel, self._brake, self._elapsed = np.ones(size), np.ones(size), np.ones(size)
         self._settled = self._resting = True
-        self._brakes = False
+        self._follow: Callable[..., Any] = _kernel() if compiled and can_compile() else follow_in_numpy
 
     @property
     def settled(self) -> bool:
@@ -74,7 +82,6 @@ class Envelope:
             _MONOTONE,
         )
         self._elapsed[places] = 0.0
-        self._brakes = bool(self._speed.any())
         self._settle((self.value == self.target).all() and not self.velocity.any())
 
     def glide(self, value: npt.ArrayLike, velocity: npt.ArrayLike, fade: float, target: npt.ArrayLike = 0.0) -> None:
@@ -88,22 +95,16 @@ class Envelope:
         if self._settled:
             return self.value
         self._elapsed += dt
-        u = np.minimum(self._elapsed / self._travel, 1.0)
-        distance, square, left = self.target - self._start, u * u, 1.0 - u
-        value = self._start + distance * (square * u * (10.0 - 15.0 * u + 6.0 * square))
-        self.velocity = distance / self._travel * (30.0 * square * left * left)
-        there = u > _ALMOST
-        if self._brakes:
-            w = np.minimum(self._elapsed / self._brake, 1.0)
-            braked, braked_speed = braking(w)
-            value += self._speed * self._brake * braked
-            self.velocity += self._speed * braked_speed
-            there &= w > _ALMOST
-        self.velocity[there] = 0.0
-        self.value = np.where(there, self.target, np.minimum(np.maximum(value, self.low), self.high))
-        self._settle(there.all())
+        moves = self._start, self.target, self._speed, self._travel, self._brake, self._elapsed
+        self._settle(self._follow(*moves, self.low, self.high, self.value, self.velocity))
         return self.value
 
     def _settle(self, there: Any) -> None:
         self._settled = bool(there)
         self._resting = self._settled and not self.target.any()
+
+
+def _kernel() -> Callable[..., Any]:
+    from agentface.motion.minimum_jerk_compiled import follow
+
+    return follow

@@ -44,8 +44,8 @@ class GazeChannel(TurnChannel):
         table: has the figures of eyes and head together, and of how long a leap of the eyes takes.
     """
 
-    def __init__(self, head: TurnChannel, table: LifeTable) -> None:
-        super().__init__("gaze")
+    def __init__(self, head: TurnChannel, table: LifeTable, *, compiled: bool = False) -> None:
+        super().__init__("gaze", compiled=compiled)
         self._eyes = self.names
         self.names = (*self._eyes, *_JOINED)
         self.movers: list[HeadMover] = []
@@ -54,9 +54,10 @@ class GazeChannel(TurnChannel):
         self._point: Point | None = None
         limits = [parameter(name) for name in self._eyes]
         span = [known.high - known.low for known in limits]
-        self._rest = Envelope(len(span), [-reach for reach in span], span)
+        self._rest = Envelope(len(span), [-reach for reach in span], span, compiled=compiled)
         reach = [math.radians(limit) for limit in self._figures.head_limit_deg]
-        self._joined = Envelope(len(_JOINED), [-2.0 * limit for limit in reach], [2.0 * limit for limit in reach])
+        furthest = [2.0 * limit for limit in reach]
+        self._joined = Envelope(len(_JOINED), [-far for far in furthest], furthest, compiled=compiled)
         self._reach = reach
         self._head_for: tuple[float, ...] = ()
         self._joins_in, self._joins_at_once = math.inf, False

@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, MutableMapping
+from collections.abc import Callable, Iterator, Mapping, MutableMapping
 from dataclasses import replace
 from typing import TypeVar
 
 import numpy as np
-import numpy.typing as npt
 
 from agentface.conventions import Doubles, Floats
 from agentface.errors import InvalidValueError, UnknownNameError
+from agentface.kernel import can_compile
 from agentface.motion.action_units import ActionUnitChannel
+from agentface.motion.blending import Claim, Claims, blend_in_numpy
 from agentface.motion.blink import BlinkChannel
 from agentface.motion.channel import Channel, Rank
 from agentface.motion.conflicts import Conflicts, default_conflicts
@@ -39,60 +40,22 @@ _HEAD_LOW, _HEAD_HIGH = _LOW[_HEAD], _HIGH[_HEAD]
 
 
 class _Layer:
-    """A channel with its rank; ``wanted`` is what it wants now, values above weights."""
+    """A channel with its rank; ``values`` and ``weights`` are what it wants now, if ``wants``."""
 
     def __init__(self, channel: Channel, rank: Rank) -> None:
         self.channel, self.rank = channel, rank
         self.names = tuple(channel.names)
-        self.wanted: Doubles = np.zeros((2, len(self.names)))
-        self.values, self.weights = self.wanted
-        self.weights[:] = 1.0
-        self._ones = self.weights.tobytes()
+        self.values: Doubles = np.zeros(len(self.names))
+        self.weights: Doubles = np.ones(len(self.names))
 
-    def write(self) -> bytes:
-        """Ask the channel. The bytes tell what it wants from what it wanted earlier; none for nothing."""
-        if self.channel.write(self.values, self.weights) is False:
-            return b""
-        return self.wanted.tobytes()
+    def move_to(self, wanted: Doubles) -> None:
+        """Keep what it wants in ``wanted (2, len(names))`` from now on."""
+        wanted[0], wanted[1] = self.values, self.weights
+        self.values, self.weights = wanted
 
-    def is_whole(self, wanted: bytes) -> bool:
-        """Whether all weights are 1 in what :meth:`write` gave."""
-        return wanted.endswith(self._ones)
-
-
-class _Step:
-    """Those parameters of one layer that are blended at once: their places in a pose, and in the layer."""
-
-    def __init__(self, number: int, layer: _Layer, way: Way, rows: list[int]) -> None:
-        self.number, self._layer, self._way = number, layer, way
-        self._places = _compact([parameter(layer.names[row]).index for row in rows])
-        self._rows = _compact(rows)
-
-    def blend(self, values: Doubles, wants: bytes) -> None:
-        """Blend what the layer ``wants`` over ``values (COUNT,)``: ``(1 - w) v + w f(v)`` for a weight of w."""
-        below, wanted = values[self._places], self._layer.values[self._rows]
-        if self._way == "max":
-            wanted = np.maximum(below, wanted)
-        elif self._way == "add":
-            wanted = below + wanted
-        elif self._way == "scale":
-            wanted = below * wanted
-        if not self._layer.is_whole(wants):
-            weights = self._layer.weights[self._rows]
-            wanted = (1.0 - weights) * below + weights * wanted
-        values[self._places] = wanted
-
-
-def _blend(steps: tuple[_Step, ...], values: Doubles, wants: list[bytes]) -> None:
-    for step in steps:
-        if wants[step.number]:
-            step.blend(values, wants[step.number])
-
-
-def _compact(places: list[int]) -> slice | npt.NDArray[np.intp]:
-    """Places as a slice where they follow one another: numpy then copies nothing."""
-    first, last = places[0], places[-1]
-    return slice(first, last + 1) if places == list(range(first, last + 1)) else np.array(places, np.intp)
+    def write(self) -> bool:
+        """Ask the channel; whether it wants anything now."""
+        return self.channel.write(self.values, self.weights) is not False
 
 
 class Mixer(MutableMapping[str, Channel]):
@@ -125,29 +88,29 @@ class Mixer(MutableMapping[str, Channel]):
     ) -> None:
         self._conflicts = conflicts or default_conflicts()
         self._layers: dict[str, _Layer] = {}
-        self._turning: tuple[_Step, ...] = ()
-        self._steps: tuple[_Step, ...] = ()
+        self._blend: Callable[..., None] = _kernel() if compiled and can_compile() else blend_in_numpy
         self._values: Doubles = np.zeros(COUNT)
-        self._wanted: tuple[bytes, ...] | None = None
+        self._shown = b""
         self._pose = FacePose()
         table, random = life or default_life(), random or np.random.default_rng(0)
         lags_s = drawn_lags(random, table.sides.lag_s)
         emotion = EmotionChannel(rules, gains, pairs=self._conflicts.pairs, lags_s=lags_s)
         self.emotion = self._own("emotion", emotion)
-        head, blink = TurnChannel("head"), BlinkChannel()
-        self.gaze = self._own("gaze", GazeChannel(head, table))
+        head, blink = TurnChannel("head", compiled=compiled), BlinkChannel(compiled=compiled)
+        self.gaze = self._own("gaze", GazeChannel(head, table, compiled=compiled))
         self.head = self._own("head", head)
-        self.action_units = self._own("action_units", ActionUnitChannel())
+        self.action_units = self._own("action_units", ActionUnitChannel(compiled=compiled))
         self.performance = self._own("performance", PerformanceChannel())
         self.faps = self._own("faps", FapChannel())
         self.speech = self._own("speech", SpeechChannel(compiled=compiled, yields=self._conflicts.yields))
         gesturing = GestureChannel(all_gestures() if gestures is None else gestures, lags_s)
-        self.life = self._own("life", LifeChannel(table, random, self.gaze, blink, gesturing, lags_s))
+        life_channel = LifeChannel(table, random, self.gaze, blink, gesturing, lags_s, compiled=compiled)
+        self.life = self._own("life", life_channel)
         self.gestures = self._own("gestures", gesturing)
         self.speech.follow(self.life)
         self.gaze.movers = [self.life, self.gestures]
         self.blink = self._own("blink", blink)
-        self.muscles = self._own("muscles", MuscleChannel())
+        self.muscles = self._own("muscles", MuscleChannel(compiled=compiled))
         self._fixed = frozenset(self._layers)
 
     def add(self, name: str, channel: Channel, *, priority: int | None = None, way: Way | None = None) -> None:
@@ -185,23 +148,24 @@ class Mixer(MutableMapping[str, Channel]):
         Raises InvalidValueError for a channel that wants what is no finite number.
         """
         self.emotion.apart = self.life.presence
-        wants = [layer.write() for layer in self._layers.values()]
-        values = self._values
+        values, wants = self._values, self._wants
+        for number, layer in enumerate(self._asked):
+            wants[number] = layer.write()
         values[:] = _NEUTRAL
-        _blend(self._turning, values, wants)
+        self._blend(self._turning, wants, self._wanted, values)
         if self.gaze.steady:
             self.gaze.head_is(*np.minimum(np.maximum(values[_HEAD], _HEAD_LOW), _HEAD_HIGH).tolist())
-            wants[self._gaze_layer] = self._layers["gaze"].write()
-        wanted = tuple(wants)
-        if wanted == self._wanted:
+            wants[self._gaze_layer] = self._asked[self._gaze_layer].write()
+        shown = wants.tobytes() + self._wanted.tobytes()
+        if shown == self._shown:
             return self._pose
-        _blend(self._steps, values, wants)
+        self._blend(self._others, wants, self._wanted, values)
         np.minimum(np.maximum(values, _LOW, out=values), _HIGH, out=values)
         try:
             self._pose = FacePose(values)
         except InvalidValueError:
-            raise self._blame(wanted) from None
-        self._wanted = wanted
+            raise self._blame() from None
+        self._shown = shown
         return self._pose
 
     def drivers(self) -> dict[str, list[str]]:
@@ -212,7 +176,7 @@ class Mixer(MutableMapping[str, Channel]):
         moved: dict[str, list[str]] = {}
         hidden: set[str] = set()
         order = {name: number for number, name in enumerate(self._layers)}
-        wanted = {name: bool(layer.write()) for name, layer in self._layers.items()}
+        wanted = {name: layer.write() for name, layer in self._layers.items()}
         rows = [
             (layer.rank.priority_of(parameter_), order[name], name, row, parameter_)
             for name, layer in self._layers.items()
@@ -265,25 +229,32 @@ class Mixer(MutableMapping[str, Channel]):
         self._arrange()
 
     def _arrange(self) -> None:
-        """Sort the parameters of all layers into steps, those of the lowest priority first; the head's by themselves:
-        where the eyes have to turn depends on them.
+        """Put what all channels want into one place, and the claims in order; the head's by themselves: where the eyes
+        have to turn depends on them.
         """
-        steps: tuple[dict[tuple[int, int, Way], list[int]], ...] = ({}, {})
-        layers = tuple(self._layers.values())
-        for number, layer in enumerate(layers):
-            for row, name in enumerate(layer.names):
+        self._asked = tuple(self._layers.values())
+        ends = np.cumsum([len(layer.names) for layer in self._asked]).tolist()
+        self._wants, self._wanted = np.zeros(len(self._asked), np.bool_), np.zeros((2, ends[-1]))
+        claims: tuple[list[Claim], list[Claim]] = ([], [])
+        for number, (layer, end) in enumerate(zip(self._asked, ends, strict=True)):
+            first = end - len(layer.names)
+            layer.move_to(self._wanted[:, first:end])
+            for column, name in enumerate(layer.names, first):
                 turns = parameter(name).index in _HEADS
-                key = (layer.rank.priority_of(name), number, layer.rank.way_of(name))
-                steps[turns].setdefault(key, []).append(row)
-        self._steps, self._turning = (
-            tuple(_Step(number, layers[number], way, rows) for (_, number, way), rows in sorted(found.items()))
-            for found in steps
-        )
+                claims[turns].append(Claim(layer.rank.priority_of(name), number, layer.rank.way_of(name), column, name))
+        self._others, self._turning = (Claims.of(found) for found in claims)
         self._gaze_layer = list(self._layers).index("gaze") if "gaze" in self._layers else 0
-        self._wanted = None
+        self._shown = b""
 
-    def _blame(self, wanted: tuple[bytes, ...]) -> InvalidValueError:
-        for (name, layer), wants in zip(self._layers.items(), wanted, strict=True):
-            if wants and not np.isfinite(layer.wanted).all():
-                return InvalidValueError(f"channel {name}", "finite values and weights", layer.wanted.tolist())
+    def _blame(self) -> InvalidValueError:
+        for (name, layer), wants in zip(self._layers.items(), self._wants.tolist(), strict=True):
+            wanted = np.stack([layer.values, layer.weights])
+            if wants and not np.isfinite(wanted).all():
+                return InvalidValueError(f"channel {name}", "finite values and weights", wanted.tolist())
         return InvalidValueError("channels", "finite values", self._values.tolist())
+
+
+def _kernel() -> Callable[..., None]:
+    from agentface.motion.blending_compiled import blend
+
+    return blend

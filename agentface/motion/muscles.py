@@ -16,9 +16,10 @@ class MuscleChannel:
 
     names = tuple(known.name for known in _HELD)
 
-    def __init__(self) -> None:
-        self._value = Envelope(len(_HELD), [known.low for known in _HELD], [known.high for known in _HELD])
-        self._weight = Envelope(len(_HELD))
+    def __init__(self, *, compiled: bool = False) -> None:
+        low, high = [known.low for known in _HELD], [known.high for known in _HELD]
+        self._value = Envelope(len(_HELD), low, high, compiled=compiled)
+        self._weight = Envelope(len(_HELD), compiled=compiled)
 
     def set(self, name: str, value: float, fade: float) -> None:
         """Hold a parameter (both sides where none is named) at ``value``."""

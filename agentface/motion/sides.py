@@ -1,11 +1,34 @@
-"""The two sides of a pair, which never move in exact step."""
+"""The two sides of a pair, which never move in exact step, nor equally far."""
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 
-from agentface.conventions import SIDES
+from agentface.conventions import SIDES, Doubles, Indices
 from agentface.parameters import PARAMETERS
+
+
+class Sides(NamedTuple):
+    """What parameters with sides make of muscles without, ``(N,)`` each."""
+
+    muscles: Indices
+    """The place of the muscle that each is a side of."""
+    lates: Doubles
+    """How late it is, 0..1 of a fixed time."""
+    gains: Doubles
+    """How far it goes."""
+
+
+def to_sides_in_numpy(now: Doubles, earlier: Doubles, apart: float, sides: Sides, out: Doubles) -> None:
+    """Write into ``out (N,)`` what the sides are when the muscles are ``now (M,)`` and were ``earlier (M,)``.
+
+    ``earlier`` is as long ago as what is wholly late; ``apart`` 0..1 is how much it all is.
+    """
+    np.take(now, sides.muscles, out=out)
+    out += apart * sides.lates * (earlier[sides.muscles] - out)
+    out *= sides.gains
 
 
 def drawn_lags(random: np.random.Generator, most_s: float) -> dict[str, float]:

@@ -54,7 +54,7 @@ class SpeechChannel:
         self.articulation: Articulation = default_articulation()
         self.ended: list[Callable[[], None]] = []
         """Called once for every utterance: when it has been said, and when it is interrupted or is never begun."""
-        self._yielding = Yielding(self.articulation, yields or default_conflicts().yields)
+        self._yielding = Yielding(self.articulation, yields or default_conflicts().yields, compiled=compiled)
         self.names = self._yielding.names
         self._compiled = compiled and can_compile()
         self._now = 0.0
@@ -65,11 +65,11 @@ class SpeechChannel:
         self._following: Following | None = None
         self._ended_at = 0.0
         size = self.articulation.size
-        self._rest = Envelope(size, -_FURTHEST, _FURTHEST)
+        self._rest = Envelope(size, -_FURTHEST, _FURTHEST, compiled=compiled)
         self._sample, self._ahead = np.zeros(size), np.zeros(size)
         self._scratch = np.zeros(len(self.articulation.articulators))
-        self._visemes = Envelope(len(self.articulation.visemes))
-        self._until = np.full(len(self.articulation.visemes), math.inf)
+        self._visemes = Envelope(len(self.articulation.visemes), compiled=compiled)
+        self._until = [math.inf] * len(self.articulation.visemes)
 
     def follow(self, follower: Follower) -> None:
         """Tell ``follower``, which is advanced after this channel, of all that is said."""
@@ -126,10 +126,16 @@ class SpeechChannel:
     def hush(self) -> None:
         """Say no more; the mouth is back to what the face shows within ``HUSH_S``."""
         self._visemes.move(0.0, HUSH_S)
-        self._until[:] = math.inf
+        self._until = [math.inf] * len(self._until)
         if self._shown is not None or not self._rest.resting:
             self._hushed = min(self._hushed, self._now)
         self._drop()
+
+    def take_back(self, phones: Sequence[Phone]) -> None:
+        """Do not say what waits with these phones, the last of those that do; nothing where none does."""
+        waiting = [each for each in self._waiting if each.told == tuple(phones) and each.doing.outcome is None]
+        if waiting:
+            waiting[-1].doing.end(whole=False)
 
     def show(self, name: str, weight: float, duration: float | None = None) -> None:
         """Show a viseme at a weight 0..1 beside other such, until told otherwise or for ``duration`` s."""
@@ -143,7 +149,7 @@ class SpeechChannel:
     def release(self, fade: float) -> None:
         """Let go of single visemes; what is being said goes on, :meth:`hush` ends it."""
         self._visemes.move(0.0, fade)
-        self._until[:] = math.inf
+        self._until = [math.inf] * len(self._until)
 
     def advance(self, dt: float) -> None:
         """Let ``dt`` seconds pass."""
@@ -164,9 +170,6 @@ class SpeechChannel:
         sample += self._rest.value
         if not self._visemes.resting:
             sample += (1.0 - min(max(sample[-1], 0.0), 1.0)) * self._mixed()
-        tight = max(sample[-2], 0.0)
-        np.minimum(np.maximum(sample, -1.0, out=sample), 1.0, out=sample)
-        sample[-2], sample[-1] = tight, max(sample[-1], 0.0)
         self._yielding.write(sample, values, weights)
         return True
 
@@ -212,7 +215,7 @@ class SpeechChannel:
 
     def _next_event(self) -> float:
         """When something happens by itself next: inf for never."""
-        next_ = float(self._until.min())
+        next_ = min(self._until)
         if self._current is not None:
             next_ = min(next_, self._over(self._current))
         if self._shown is not None and self._current is None:
@@ -228,9 +231,10 @@ class SpeechChannel:
 
     def _happen(self) -> None:
         """Do what is due now."""
-        due = self._until <= self._now
-        if due.any():
-            self._until[due] = math.inf
+        due = [place for place, until in enumerate(self._until) if until <= self._now]
+        for place in due:
+            self._until[place] = math.inf
+        if due:
             self._visemes.move(0.0, VISEME_S, due)
         if self._current is not None and self._over(self._current) <= self._now:
             self._tell_ended(self._current, whole=True)

@@ -12,10 +12,11 @@ from agentface.parameters import PARAMETERS
 class TurnChannel:
     """The angles of the eyes (``gaze``) or of the head (``head``), in radians."""
 
-    def __init__(self, kind: Literal["gaze", "head"]) -> None:
+    def __init__(self, kind: Literal["gaze", "head"], *, compiled: bool = False) -> None:
         turned = [known for known in PARAMETERS if known.kind == kind]
         self.names = tuple(known.name for known in turned)
-        self.angles = Envelope(len(turned), [known.low for known in turned], [known.high for known in turned])
+        low, high = [known.low for known in turned], [known.high for known in turned]
+        self.angles = Envelope(len(turned), low, high, compiled=compiled)
 
     def turn(self, angles: tuple[float, ...], fade: float) -> None:
         """Turn to ``angles`` in radians."""

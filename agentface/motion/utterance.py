@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from bisect import bisect_right
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
@@ -31,6 +32,7 @@ class Utterance:
 
     Attributes:
         doing: whether it waits, is said, or is over.
+        told: its phones, as they were told.
     """
 
     def __init__(
@@ -45,8 +47,10 @@ class Utterance:
     ) -> None:
         self._articulation, self._loudness, self.live = articulation, loudness, live
         self.doing = Doing()
+        self.told = tuple(phones)
         self._phones = [_moved(phone, start, rate) for phone in phones]
         self._looks = list(looks)
+        self._starts = [phone.start_s for phone in self._phones]
         self._began = 0.0
         self.timeline = self._laid_out()
 
@@ -67,10 +71,9 @@ class Utterance:
 
     def sounds(self, after: float, until: float) -> Iterator[tuple[str, float, float]]:
         """The main viseme, the start and the length in s of the sounds that begin after a time, until another one."""
-        for phone, look in zip(self._phones, self._looks, strict=True):
-            start = self._began + phone.start_s
-            if after < start <= until:
-                yield look[0].visemes[0][0], start, phone.end_s - phone.start_s
+        first, end = (bisect_right(self._starts, self.local(time)) for time in (after, until))
+        for phone, look in zip(self._phones[first:end], self._looks[first:end], strict=True):
+            yield look[0].visemes[0][0], self._began + phone.start_s, phone.end_s - phone.start_s
 
     def local(self, now: float) -> float:
         """A time of the clock on the utterance's timeline."""
@@ -93,6 +96,7 @@ class Utterance:
         ]
         self._phones = [*(phone for phone, _ in kept), *fresh]
         self._looks = [*(look for _, look in kept), *looks]
+        self._starts = [phone.start_s for phone in self._phones]
         self.timeline = self._laid_out()
 
     def _laid_out(self) -> Timeline:

@@ -156,3 +156,16 @@ def test_a_finished_move_leaves_nothing_behind(frames, fade):
     envelope.advance(sum(frames) * 1e-10)
     envelope.move(0.0, fade)
     assert abs(envelope.advance(fade / 1000)[0] - 1.0) < 1e-3
+
+
+@given(st.lists(st.tuples(st.lists(fractions, min_size=3, max_size=3), fades, st.floats(0.0, 1.5)), max_size=6))
+def test_the_kernel_equals_its_numpy_twin(plan):
+    compiled, plain = (Envelope(3, -0.5, [1.0, 1.0, 0.8], compiled=how) for how in (True, False))
+    for target, fade, seconds in plan:
+        for envelope in (compiled, plain):
+            places = [0, 1] if seconds > 1.0 else [0, 1, 2]
+            envelope.move(target[: len(places)], fade, places)
+            envelope.advance(seconds)
+        np.testing.assert_allclose(compiled.value, plain.value, atol=1e-12)
+        np.testing.assert_allclose(compiled.velocity, plain.velocity, atol=1e-9)
+        assert (compiled.settled, compiled.resting) == (plain.settled, plain.resting)

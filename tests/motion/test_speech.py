@@ -225,10 +225,11 @@ def test_the_jaw_keeps_to_its_limit_whatever_is_felt(sound, felt):
 @given(
     st.lists(st.floats(0, 1), min_size=ARTICULATION.size, max_size=ARTICULATION.size),
     st.floats(0, 1),
+    st.booleans(),
 )
-def test_what_is_shown_is_speech_and_what_is_left_of_what_is_felt(sample, felt):
+def test_what_is_shown_is_speech_and_what_is_left_of_what_is_felt(sample, felt, compiled):
     yields = default_conflicts().yields
-    yielding = Yielding(ARTICULATION, yields)
+    yielding = Yielding(ARTICULATION, yields, compiled=compiled)
     values, weights = np.zeros(len(yielding.names)), np.zeros(len(yielding.names))
     sample = np.array(sample)
     yielding.write(sample, values, weights)
@@ -246,6 +247,15 @@ def test_what_is_shown_is_speech_and_what_is_left_of_what_is_felt(sample, felt):
             assert value >= 0.0
         else:
             assert value == pytest.approx(whole, abs=1e-9)
+
+
+@given(st.lists(st.floats(-2, 2), min_size=ARTICULATION.size, max_size=ARTICULATION.size))
+def test_the_kernel_of_yielding_equals_its_numpy_twin(sample):
+    twins = [Yielding(ARTICULATION, default_conflicts().yields, compiled=how) for how in (True, False)]
+    wanted = np.full((2, 2, len(twins[0].names)), np.nan)
+    for yielding, (values, weights) in zip(twins, wanted, strict=True):
+        yielding.write(np.array(sample), values, weights)
+    np.testing.assert_allclose(wanted[0], wanted[1], atol=1e-12)
 
 
 def test_with_no_limit_the_jaw_is_as_open_as_both_make_it():

@@ -28,7 +28,7 @@ class Stage:
     def __init__(self):
         self.face = Face(head_model(), compiled=False)
         self.player = BlockPlayer(self.face, Synthesizer(lambda _voice, _language: HundredthsVoice()))
-        self.face._blocks = self.player
+        self.face._agendas.blocks = self.player
         self.face.noted.append(self.player.notice)
         self.now, self.asked, self.told, self.failed = 0.0, [], [], []
         self.face.noted.append(lambda request: self.asked.append((round(self.player._now, 6), request)))
@@ -42,7 +42,7 @@ class Stage:
     def run(self, seconds, dt=0.05):
         poses = []
         for _ in range(round(seconds / dt)):
-            self.face._advance(dt)
+            self.face._agendas.advance(dt, self.face.channels.advance)
             self.face._touch()
             poses.append(self.face.pose.array.copy())
         return np.array(poses)

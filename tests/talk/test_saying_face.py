@@ -35,7 +35,7 @@ def motion(face, seconds, dt):
     """The pose every so often, without a deformed skin."""
     poses = []
     for _ in range(round(seconds / dt)):
-        face._advance(dt)
+        face._agendas.advance(dt, face.channels.advance)
         face._touch()
         poses.append(face.pose.array.copy())
     return np.array(poses)
@@ -82,7 +82,7 @@ def test_what_came_of_a_text_is_noted_and_gives_the_same_again(face):
     other = Face(head_model(), compiled=False)
     replay = Replay(other, [(0.0, request) for request in noted[:2]], fps)
     replay.take_in(0.0)
-    assert other._talker is None, "nothing is spoken twice"
+    assert other._agendas.talker is None, "nothing is spoken twice"
     assert other.channels.speech.status is not None
 
 
@@ -152,14 +152,14 @@ def test_whatever_it_is_told_in_the_end_it_is_silent_and_as_before(plan):
         elif word == "speak":
             face.speak([("aa", 0.0, 0.3)], interrupt=rest[0], live=rest[1])
         elif word == "step":
-            face._advance(rest[0])
+            face._agendas.advance(rest[0], face.channels.advance)
         else:
             getattr(face, word)()
     for _ in range(400):
         if not (face.talker.texts or face.channels.speech.status):
             break
-        face._advance(0.25)
-    face._advance(3.0)
+        face._agendas.advance(0.25, face.channels.advance)
+    face._agendas.advance(3.0, face.channels.advance)
     assert not failed
     assert face.talker.texts == ()
     assert face.channels.speech.status is None
@@ -178,8 +178,7 @@ def test_a_face_that_is_dropped_or_closed_leaves_no_thread():
     assert thread.is_alive()
     made.close()
     made.close()
-    thread.join(10)
-    assert not thread.is_alive()
+    thread.join()
     del made
     gc.collect()
     assert watched() is None

@@ -2,7 +2,6 @@ from __future__ import annotations
 
 import gc
 import threading
-import time
 from collections import deque
 from types import SimpleNamespace
 
@@ -20,6 +19,7 @@ from agentface.speech.spoken import Spoken, joined, speak_line, speak_script
 from agentface.speech.synthesizer import Order, Synthesizer
 from agentface.talk.talker import LEAD_S, MOST_TEXTS, Talker
 from tests.voices import RATE, FakeVoice
+from tests.waiting import until
 
 
 class Face:
@@ -105,7 +105,7 @@ def test_the_first_sentence_does_not_wait_for_the_second():
     voice.speak = slow_second
     face.say("One. Two.")
     face.run(0.1)
-    until(lambda: voice.said == ["One."])
+    until(lambda: face.speaker._done)
     face.run(0.5)
     assert [symbol for _, symbol in face.spoken] == ["o"]
     face.run(2.0)
@@ -113,13 +113,6 @@ def test_the_first_sentence_does_not_wait_for_the_second():
     ready(face)
     face.run(1.0)
     assert face.spoken[1] == (pytest.approx(2.6, abs=0.11), "t"), "late, and then at once"
-
-
-def until(condition, within_s=20.0):
-    end = time.monotonic() + within_s
-    while not condition():
-        assert time.monotonic() < end
-        time.sleep(0.005)
 
 
 def test_texts_wait_their_turn_and_interrupt(face):
@@ -286,7 +279,7 @@ def test_a_face_that_is_gone_takes_its_voices_along():
     gc.collect()
     until(lambda: voice.closed)
     for thread in threads:
-        thread.join(10)
+        thread.join()
 
 
 def test_a_closed_synthesizer_is_silent():

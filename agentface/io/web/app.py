@@ -6,7 +6,6 @@ import asyncio
 import json
 from collections.abc import Callable, Mapping
 from concurrent.futures import Future
-from pathlib import Path
 from typing import Any, cast
 
 from starlette.applications import Starlette
@@ -24,18 +23,17 @@ from agentface.io.web.frames import MODES, Mode
 from agentface.io.web.hub import Client, Hub
 from agentface.io.web.inbox import Inbox
 from agentface.io.web.openapi import openapi
-from agentface.io.web.stage import Stage
+from agentface.io.web.page_files import FOLDER
+from agentface.io.web.stage import FaceStage
 from agentface.requests import Request
 
-PAGE = Path(__file__).parent / "page" / "dist"
-"""What ``make build`` makes of the page; not there in a checkout without node."""
-OPEN_PATHS = frozenset({"/", "/agentface.js", "/licences.txt", "/favicon.ico"})
+_ICON = "/favicon.ico"
 LARGEST_MESSAGE = 64 * 1024
 """Bytes of one message of a page."""
 _MESSAGES_AT_ONCE, _MESSAGES_A_SECOND = 480.0, 240.0
 _ANSWER_S = 10.0
 _NO_PAGE = """expected the page of this package in {folder}, got none: it is built with node.
-make build makes it; everything but the page works without."""
+make page builds it; everything but the page works without."""
 
 
 class WebFaces:
@@ -48,7 +46,7 @@ class WebFaces:
         clock: limits rates and measures.
     """
 
-    def __init__(self, stages: Mapping[str, Stage], hub: Hub, inbox: Inbox, clock: Clock) -> None:
+    def __init__(self, stages: Mapping[str, FaceStage], hub: Hub, inbox: Inbox, clock: Clock) -> None:
         self.stages, self.hub, self.inbox, self.clock = stages, hub, inbox, clock
         self.joined: Callable[[Client], None] = lambda _: None
         """Called when a page has been told hello."""
@@ -59,7 +57,7 @@ class WebFaces:
         return Starlette(
             routes=[
                 Route("/", _page),
-                Route("/favicon.ico", lambda _: Response(status_code=204)),
+                Route(_ICON, lambda _: Response(status_code=204)),
                 Route("/{file}.js", _page),
                 Route("/licences.txt", _page),
                 Route("/openapi.json", lambda _: JSONResponse(openapi())),
@@ -73,7 +71,7 @@ class WebFaces:
             exception_handlers={AgentFaceError: _refused, 404: _not_found, 405: _not_found},
         )
 
-    def stage(self, face: str | None) -> Stage:
+    def stage(self, face: str | None) -> FaceStage:
         """The face of this id, the first one without; raises UnknownNameError."""
         if face is None:
             return next(iter(self.stages.values()))
@@ -81,7 +79,7 @@ class WebFaces:
             raise UnknownNameError("face", face, tuple(self.stages))
         return self.stages[face]
 
-    def ask(self, stage: Stage, name: Any, told: Any) -> Future[None]:
+    def ask(self, stage: FaceStage, name: Any, told: Any) -> Future[None]:
         """Have a request applied with the next frame; raises what is wrong with it."""
         try:
             request = request_of(name, told)
@@ -152,7 +150,7 @@ class WebFaces:
         await _until_one_ends(client.run(), self._listen(socket, stage, client))
         self.hub.leave(client)
 
-    async def _listen(self, socket: WebSocket, stage: Stage, client: Client) -> None:
+    async def _listen(self, socket: WebSocket, stage: FaceStage, client: Client) -> None:
         rate = RateLimit(self.clock, _MESSAGES_AT_ONCE, _MESSAGES_A_SECOND)
         while True:
             message = await socket.receive()
@@ -167,7 +165,7 @@ class WebFaces:
             if answer is not None:
                 client.tell(answer)
 
-    async def _heard(self, text: str | None, stage: Stage, client: Client) -> str | None:
+    async def _heard(self, text: str | None, stage: FaceStage, client: Client) -> str | None:
         """The answer to what a page says; None for what needs none."""
         told: Any = None
         try:
@@ -186,7 +184,12 @@ class WebFaces:
         return json.dumps({"type": "done", **_id(told)})
 
 
-def _apply(stage: Stage, request: Request | None) -> None:
+def open_paths() -> frozenset[str]:
+    """What needs no token: the page and its programs, which are no secret."""
+    return frozenset({"/", _ICON, *(f"/{file.name}" for file in FOLDER.glob("*"))})
+
+
+def _apply(stage: FaceStage, request: Request | None) -> None:
     counts = stage.face.message_counts
     try:
         if request is not None:
@@ -197,7 +200,7 @@ def _apply(stage: Stage, request: Request | None) -> None:
     counts.messages += 1
 
 
-def _count(stage: Stage, kind: str) -> None:
+def _count(stage: FaceStage, kind: str) -> None:
     stage.face.message_counts.errors[kind] += 1
 
 
@@ -270,11 +273,11 @@ async def _until_one_ends(*parts: Any) -> None:
 
 async def _page(asked: HttpRequest) -> Response:
     name = "index.html" if asked.url.path == "/" else asked.url.path[1:]
-    if not (PAGE / "index.html").is_file():
-        return PlainTextResponse(_NO_PAGE.format(folder=PAGE), 404 if name != "index.html" else 200)
-    if name not in {path.name for path in PAGE.iterdir()}:
+    if not (FOLDER / "index.html").is_file():
+        return PlainTextResponse(_NO_PAGE.format(folder=FOLDER), 404 if name != "index.html" else 200)
+    if name not in {path.name for path in FOLDER.iterdir()}:
         return await _not_found(asked, Exception())
-    return FileResponse(PAGE / name, headers={"Cache-Control": "no-cache", "X-Content-Type-Options": "nosniff"})
+    return FileResponse(FOLDER / name, headers={"Cache-Control": "no-cache", "X-Content-Type-Options": "nosniff"})
 
 
 async def _refused(_: HttpRequest, error: Exception) -> Response:

@@ -7,17 +7,20 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from agentface.conventions import Floats
+from agentface.conventions import Floats, Indices
+from agentface.deform import tables as deform_tables
 from agentface.deform.crowd import Crowd
 from agentface.deform.geometry import FaceGeometry
 from agentface.head.model import HeadModel
-from agentface.io.web.modes import Modes, principal_modes, stored
+from agentface.io.web.modes import ModeSet, principal_modes, stored
 from agentface.io.web.poses import natural_poses, random_mixtures
 from agentface.io.web.unfinished import Unfinished
 
-SKIN_MODES, TONGUE_MODES = 128, 68
-_SAMPLES = {True: (1600, 800), False: (500, 300)}
+SKIN_MODES, TONGUE_MODES = 116, 80
+SAMPLES, FEW_SAMPLES = (1600, 800), (500, 300)
 """Random mixtures and natural poses that a basis is made of: of a deformer that does many at once, and of another."""
+_TONGUE = 0.35
+_MEASURED = 1200  # points
 _MARGIN = 1.25  # beyond the farthest sample
 _SEED = 14
 _CHUNK = 64
@@ -32,8 +35,8 @@ class Basis:
         tongue: of the T vertices of the tongue, before the jaw moves it.
     """
 
-    skin: Modes
-    tongue: Modes
+    skin: ModeSet
+    tongue: ModeSet
 
 
 class Projector:
@@ -45,28 +48,65 @@ class Projector:
     """
 
     def __init__(self, model: HeadModel, basis: Basis) -> None:
-        self._unfinished = Unfinished(model)
-        self._skin, self._tongue = _inverse(basis.skin), _inverse(basis.tongue)
-        self._at_rest = model.vertices, model.parts["tongue"].attributes["POSITION"]
+        neck = deform_tables.of(model).finish.neck.where
+        self._skin = _Part(basis.skin, model.vertices, _MEASURED, neck)
+        self._tongue = _Part(basis.tongue, model.parts["tongue"].attributes["POSITION"], _MEASURED)
 
     def weights(self, geometry: FaceGeometry) -> tuple[Floats, Floats]:
         """The weights of the skin's modes and of the tongue's; they lie in -1..1 but for what is past all samples."""
-        skin = self._unfinished.skin(geometry) - self._at_rest[0]
-        tongue = geometry.tongue - self._at_rest[1]
-        return self._skin @ skin.ravel(), self._tongue @ tongue.ravel()
+        there = self._skin.places
+        lying = geometry.vertices[there] - geometry.wrinkles[there, None] * geometry.smooth_normals[there]
+        return self._skin.weights(lying), self._tongue.weights(geometry.tongue[self._tongue.places])
+
+
+class _Part:
+    """Finds weights by some of the points, which know all but as much as all of them do.
+
+    Args:
+        modes: the movements.
+        rest: ``(N, 3)`` m, the points at rest.
+        count: how many points are measured; those that move more are likelier to be among them.
+        without: points that are not.
+
+    Attributes:
+        places: which points are measured.
+    """
+
+    def __init__(self, modes: ModeSet, rest: Floats, count: int, without: Indices | None = None) -> None:
+        shapes = modes.shapes.astype(np.float64)
+        likely = np.sqrt((shapes / np.linalg.norm(shapes, axis=(1, 2), keepdims=True)) ** 2).sum(axis=(0, 2))
+        if without is not None:
+            likely[without] = 0.0
+        count = min(count, int(np.count_nonzero(likely)))
+        drawn = np.random.default_rng(_SEED).choice(len(rest), count, replace=False, p=likely / likely.sum())
+        self.places = np.sort(drawn).astype(np.int32)
+        self._rest = rest[self.places]
+        measured = shapes[:, self.places].reshape(len(shapes), -1) * modes.scales[:, None].astype(np.float64)
+        size = np.linalg.norm(measured, axis=1, keepdims=True)
+        measured /= size
+        self._inverse = np.ascontiguousarray(np.linalg.solve(measured @ measured.T, measured) / size, np.float32)
+
+    def weights(self, points: Floats) -> Floats:
+        """``(K,)`` of the measured points ``(M, 3)`` m."""
+        # einsum, not a product: BLAS would wake up its threads, and wait for a core that another program has
+        found: Floats = np.einsum("kn,n->k", self._inverse, (points - self._rest).ravel())
+        return found
 
 
 def make_basis(
-    model: HeadModel, deformer: str, told: Callable[[float], object] = lambda _: None, *, many: bool = True
+    model: HeadModel,
+    deformer: str,
+    samples: tuple[int, int] = SAMPLES,
+    told: Callable[[float], object] = lambda _: None,
 ) -> Basis:
-    """The basis of a face and a deformer; ``told`` is told how much of the work is done, 0..1.
+    """The basis of a face and a deformer, made of so many random mixtures and natural poses.
 
-    ``many``: whether the deformer is quick enough for some thousand faces.
+    ``told`` is told how much of the work is done, 0..1.
     """
     rng = np.random.default_rng(_SEED)
     with Crowd(model, deformer=deformer) as crowd:
-        mixtures, natural = _SAMPLES[many]
-        poses = np.concatenate([random_mixtures(mixtures, rng), natural_poses(model, natural, rng)])
+        mixtures, natural = samples
+        poses = np.concatenate([random_mixtures(mixtures, rng, tongue=_TONGUE), natural_poses(model, natural, rng)])
         skin, tongue = sampled(crowd, poses, told)
     return Basis(_modes(skin, SKIN_MODES, rng), _modes(tongue, TONGUE_MODES, rng))
 
@@ -86,13 +126,6 @@ def sampled(crowd: Crowd, poses: Floats, told: Callable[[float], object] = lambd
     return skin, tongue
 
 
-def _modes(samples: Floats, count: int, rng: np.random.Generator) -> Modes:
+def _modes(samples: Floats, count: int, rng: np.random.Generator) -> ModeSet:
     rows = principal_modes(samples, count, rng)
     return stored(rows, _MARGIN * np.abs(samples @ rows.T).max(axis=0))
-
-
-def _inverse(modes: Modes) -> Floats:
-    """``(K, 3 N)``: what takes movements to the weights that come nearest to them."""
-    shapes = modes.shapes.reshape(len(modes.shapes), -1).astype(np.float32)
-    solved = np.linalg.solve((shapes @ shapes.T).astype(np.float64), shapes)
-    return np.ascontiguousarray(solved / modes.scales[:, None], np.float32)

@@ -20,10 +20,10 @@ Mode = Literal["basis", "exact"]
 MODES: tuple[Mode, ...] = ("basis", "exact")
 FRAME = 0
 """The first byte of a message that is a frame."""
-_LARGE = {"skin": 32, "tongue": 10}
+_LARGE = {"skin": 28, "tongue": 14}
 """So many of the first weights have 16 bits; what the others move is seen no finer with more than 8."""
 _UNIT = 1.0 / 32767
-_EXACT = 1e-5  # m
+_EXACT = 4e-6  # m
 _TURN_AND_MOVE = (_UNIT,) * 4 + (1e-5,) * 3
 _SMALL_TURN_AND_MOVE = (_UNIT,) * 4 + (2e-6,) * 3
 
@@ -40,7 +40,8 @@ def basis_layout(basis: Basis, trains: int) -> Layout:
 def exact_layout(skin: int, tongue: int, trains: int) -> Layout:
     """What a frame of vertices holds: so many of the skin, before its last stages, and of the tongue; of trains."""
     vertices = [Field("vertices", "i16", 3 * skin, _EXACT), Field("tongue_vertices", "i16", 3 * tongue, _EXACT)]
-    return Layout([*_BEGINNING, *vertices, *_RIGID, *_levels(trains)])
+    rigid = [Field(field.name, "f32", field.count) for field in _RIGID]
+    return Layout([*_BEGINNING, *vertices, *rigid, *_levels(trains, "u16")])
 
 
 _BEGINNING = (Field("frame", "u32"), Field("time_s", "f64"))
@@ -53,8 +54,8 @@ _RIGID = (
 )
 
 
-def _levels(trains: int) -> list[Field]:
-    return [Field("wrinkle_levels", "u8", trains, 1.0 / 255)] if trains else []
+def _levels(trains: int, kind: str = "u8") -> list[Field]:
+    return [Field("wrinkle_levels", kind, trains, 1.0 / (255 if kind == "u8" else 65535))] if trains else []
 
 
 class FrameWriter:

@@ -13,11 +13,12 @@ import numpy.typing as npt
 from agentface.conventions import Floats
 
 _BEYOND = 24  # directions more than are asked for
-_PASSES = 3
+_PASSES = 2
+_LEAST = 1e-12  # of the largest variance
 _WHOLE = 32767
 
 
-class Modes(NamedTuple):
+class ModeSet(NamedTuple):
     """K movements of N points, in the order of what they matter.
 
     Attributes:
@@ -37,7 +38,7 @@ class Modes(NamedTuple):
 def principal_modes(samples: Floats, count: int, rng: np.random.Generator) -> Floats:
     """``(count, D)`` float32 orthonormal rows: the directions along which ``samples (S, D)`` go farthest from 0.
 
-    Fewer than ``count`` of them where there are fewer samples.
+    Fewer than ``count`` of them where the samples have fewer.
     """
     wanted = min(count, *samples.shape)
     found = samples @ rng.standard_normal((samples.shape[1], min(wanted + _BEYOND, *samples.shape)), np.float32)
@@ -45,12 +46,16 @@ def principal_modes(samples: Floats, count: int, rng: np.random.Generator) -> Fl
         across, _ = np.linalg.qr(found)
         found = samples @ (samples.T @ across)
     across, _ = np.linalg.qr(found)
-    _, _, rows = np.linalg.svd(across.T @ samples, full_matrices=False)
-    return np.ascontiguousarray(rows[:wanted], np.float32)
+    few = across.T @ samples
+    lengths, turned = np.linalg.eigh((few @ few.T).astype(np.float64))
+    lengths, turned = lengths[::-1][:wanted], turned[:, ::-1][:, :wanted]
+    kept = lengths > _LEAST * max(float(lengths[0]), _LEAST)
+    rows = (turned[:, kept] / np.sqrt(lengths[kept])).astype(np.float32).T @ few
+    return np.ascontiguousarray(rows)
 
 
-def stored(rows: Floats, reach: Floats) -> Modes:
+def stored(rows: Floats, reach: Floats) -> ModeSet:
     """Directions ``(K, 3 N)`` in whole numbers, where the weight 1 goes ``reach (K,)`` m along each."""
     largest = np.maximum(np.abs(rows).max(axis=1), np.finfo(np.float32).tiny)
     shapes = np.rint(rows * (_WHOLE / largest)[:, None]).astype(np.int16)
-    return Modes(shapes.reshape(len(rows), -1, 3), (reach * largest / _WHOLE).astype(np.float32))
+    return ModeSet(shapes.reshape(len(rows), -1, 3), (reach * largest / _WHOLE).astype(np.float32))

@@ -5,7 +5,7 @@ from __future__ import annotations
 from functools import cache
 from typing import Any
 
-from agentface.io.web.asked import ASKED, Asked
+from agentface.io.web.asked import ASKED, RequestKind
 
 _STATUS = "What the face is doing now, as Face.status() in Python and /agentface/status over OSC."
 
@@ -15,11 +15,11 @@ def openapi() -> dict[str, Any]:
     """The document, of OpenAPI 3.1."""
     from importlib.metadata import version
 
-    paths: dict[str, Any] = {"/status": {"get": _get("status", _STATUS, [_query("face", "the id of a face")])}}
-    paths["/faces"] = {"get": _get("faces", "The faces that there are, and who looks at them.", [])}
+    paths: dict[str, Any] = {"/status": {"get": _get("read_status", _STATUS, [_query("face", "the id of a face")])}}
+    paths["/faces"] = {"get": _get("list_faces", "The faces that there are, and who looks at them.", [])}
     paths["/faces/{face}/head.glb"] = {
         "get": {
-            "operationId": "head",
+            "operationId": "read_head",
             "summary": "The head, with what a page needs to draw it.",
             "parameters": [_path("face"), _query("look", "the name of one of its looks")],
             "responses": {"200": {"description": "a binary glTF 2.0 file", "content": {"model/gltf-binary": {}}}},
@@ -63,7 +63,7 @@ def _get(name: str, summary: str, parameters: list[dict[str, Any]]) -> dict[str,
     return {"operationId": name, "summary": summary, "parameters": parameters, "responses": {"200": answer, **_REFUSED}}
 
 
-def _post(name: str, asked: Asked, parameters: list[dict[str, Any]]) -> dict[str, Any]:
+def _post(name: str, asked: RequestKind, parameters: list[dict[str, Any]]) -> dict[str, Any]:
     schema = {
         "type": "object",
         "properties": dict(asked.fields),

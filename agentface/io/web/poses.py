@@ -14,19 +14,23 @@ from agentface.requests import Gesture, SetEmotions, SetGaze, SetHead, SetLiveli
 from agentface.speech.visemes import viseme_table
 
 _HEAD = [known.index for known in PARAMETERS if known.kind == "head"]
+_TONGUE = [known.index for known in PARAMETERS if known.kind == "tongue"]
 _SHARES = (0.05, 0.12, 0.25)
 """Of the parameters that a random mixture moves."""
 _STEP_S = 0.1
 _CHANGES = 6  # steps
 
 
-def random_mixtures(count: int, rng: np.random.Generator) -> Floats:
+def random_mixtures(count: int, rng: np.random.Generator, *, tongue: float = 0.0) -> Floats:
     """``(count, COUNT)`` float32: some parameters anywhere in their ranges, the others and the head at rest.
 
-    What no face would do, too: both lids shut over wide eyes, the tongue out of a bitten lip.
+    What no face would do, too: both lids shut over wide eyes, the tongue out of a bitten lip. At least the share
+    ``tongue`` of the tongue's parameters is moved.
     """
     shares = np.array(_SHARES)[np.arange(count) % len(_SHARES)]
-    moved = rng.random((count, COUNT)) < shares[:, None]
+    likely = np.repeat(shares[:, None], COUNT, axis=1)
+    likely[:, _TONGUE] = np.maximum(likely[:, _TONGUE], tongue)
+    moved = rng.random((count, COUNT)) < likely
     values = np.where(moved, LOW + (HIGH - LOW) * rng.random((count, COUNT)), NEUTRAL).astype(np.float32)
     values[:, _HEAD] = 0.0
     return np.clip(values, LOW, HIGH)

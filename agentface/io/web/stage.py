@@ -1,4 +1,4 @@
-""":class:`Stage`: a face as pages see it: its basis, its head as a file, its frames, its voice."""
+""":class:`FaceStage`: a face as pages see it: its basis, its head as a file, its frames, its voice."""
 
 from __future__ import annotations
 
@@ -15,10 +15,12 @@ from agentface.errors import UnknownNameError
 from agentface.face import Face
 from agentface.head.look import load_look, look_names
 from agentface.head.model import HeadModel
-from agentface.io.web.basis import Basis, make_basis
+from agentface.io.web.basis import FEW_SAMPLES, SAMPLES, Basis, make_basis
 from agentface.io.web.frames import FrameWriter, Mode
 
 PROTOCOL = 1
+Measure = Callable[[Face, str, Callable[[str], object]], Basis]
+"""Finds the basis of a face and the name of its deformer; tells what takes long."""
 HeadEncoder = Callable[[HeadModel, str | None, Basis], bytes]
 """Makes the file of a head, in a look of its own, with a basis."""
 
@@ -37,7 +39,7 @@ class HeadFile:
     etag: str
 
 
-class Stage:
+class FaceStage:
     """A face and what pages need of it.
 
     Args:
@@ -48,6 +50,7 @@ class Stage:
         encode: makes its file.
         fps: frames a second.
         told: told what takes long.
+        measure: finds its basis.
     """
 
     def __init__(
@@ -60,10 +63,11 @@ class Stage:
         encode: HeadEncoder,
         fps: float,
         told: Callable[[str], object],
+        measure: Measure,
     ) -> None:
         self.face, self.name, self.deformer, self.fps = face, name, deformer, fps
         self._look, self._encode = look, encode
-        self.basis = basis_of(face, deformer, told)
+        self.basis = measure(face, deformer, told)
         self.writer = FrameWriter(face.model, self.basis)
         self._heads: dict[str | None, HeadFile] = {}
         self._lock = Lock()
@@ -106,7 +110,7 @@ def basis_of(face: Face, deformer: str, told: Callable[[str], object] = lambda _
     def make(model: HeadModel) -> Basis:
         told(f"measuring how {model.name} moves, for pages: once on this machine")
         start = time.perf_counter()
-        made = make_basis(model, deformer, many=hasattr(face.deformer, "worker"))
+        made = make_basis(model, deformer, SAMPLES if hasattr(face.deformer, "worker") else FEW_SAMPLES)
         told(f"measured in {time.perf_counter() - start:.0f} s")
         return made
 
@@ -116,11 +120,6 @@ def basis_of(face: Face, deformer: str, told: Callable[[str], object] = lambda _
 
 def encode_head_file(model: HeadModel, look: str | None, basis: Basis) -> bytes:
     """The file of a head that the page of this package draws."""
-    try:
-        from agentface.io.web.head_file import encode_head
-    except ImportError:
-        from agentface.mesh.glb import MeshArrays, encode_glb
+    from agentface.io.web.head_file import encode_head
 
-        meshes = {"skin": MeshArrays(model.triangles, {"POSITION": model.vertices}), **model.parts}
-        return encode_glb(meshes, "")
     return encode_head(model, load_look(model, look), basis)

@@ -69,8 +69,8 @@ class GestureChannel:
         self._lags = dict(lags_s or {})
         self._places = {name: place for place, name in enumerate(self.names)}
         self._contracts = tuple(parameter(name).contracts for name in self.names)
-        self._whole = np.array(self._contracts, np.bool_)
-        self._adds = ~self._whole
+        # what is wanted of what no gesture moves just now: contractions in full, at no weight, and nothing added
+        self._idle = np.array([self._contracts, [not contracts for contracts in self._contracts]], np.float64)
         self._playing: list[_Playing] = []
         self._now = 0.0
         self._head = [0.0] * len(_MOVED)
@@ -135,24 +135,24 @@ class GestureChannel:
         self._head = [0.0] * len(_MOVED)
         if not self._playing:
             return False
-        levels = [0.0] * len(self.names)
-        values[self._whole] = 1.0
+        levels: dict[int, float] = {}
         for each in self._playing:
             if each.start < self._now:
                 self._add(each, levels)
-        shown = np.array(levels)
-        np.copyto(values, shown, where=self._adds)
-        np.copyto(weights, shown, where=self._whole)
+        values[:], weights[:] = self._idle
+        for place, level in levels.items():
+            (weights if self._contracts[place] else values)[place] = level
         return True
 
-    def _add(self, each: _Playing, levels: list[float]) -> None:
+    def _add(self, each: _Playing, levels: dict[int, float]) -> None:
         part, since = each.part(self._now), self._now - each.start
         for track, lag in zip(each.gesture.tracks, each.lags, strict=True):
             place, level = self._places[track.name], part * track.at(each.pace * (since - lag))
+            before = levels.get(place, 0.0)
             if self._contracts[place]:
-                levels[place] = 1.0 - (1.0 - levels[place]) * (1.0 - level)
+                levels[place] = 1.0 - (1.0 - before) * (1.0 - level)
             else:
-                levels[place] += level
+                levels[place] = before + level
                 if track.name in _MOVED and not each.gesture.moves_eyes:
                     self._head[_MOVED.index(track.name)] += level
 

@@ -43,6 +43,7 @@ class LifeChannel:
         *("gaze_yaw", "gaze_pitch"),
         *("head_yaw", "head_pitch", "head_roll"),
         *(f"{name}_{side}" for name in ("nostril_flare", "pupil_dilation") for side in SIDES),
+        "breath",
     )
 
     def __init__(
@@ -53,6 +54,8 @@ class LifeChannel:
         blink: BlinkChannel,
         gestures: GestureChannel,
         lags_s: Mapping[str, float],
+        *,
+        compiled: bool = False,
     ) -> None:
         self._table, self._gaze, self._blink, self._gestures = table, gaze, blink, gestures
         waves, blinks, saccades, breath, habits, self._beats = random.spawn(6)
@@ -64,7 +67,7 @@ class LifeChannel:
         self._waves = self._bands(waves, pupils[1] - pupils[0])
         self._moved = np.zeros(7)
         self._blinks = Blinks(table, blink, blinks)
-        self._saccades = Saccades(table.saccades, saccades)
+        self._saccades = Saccades(table.saccades, saccades, compiled=compiled)
         self._breath = Breath(table.breathing, breath)
         self._habits = Habits(gestures, habits)
         self.liveliness = 0.0
@@ -75,7 +78,8 @@ class LifeChannel:
         self._speaks = False
         self._cues: list[tuple[float, int, Callable[[], None]]] = []
         self._numbers = count()
-        self._levels = Envelope(4, [0.0, 0.0, 0.0, -1.0], [1.0, 1.0 / table.dial.natural, _WIDEST_SWAY, 1.0])
+        low, high = [0.0, 0.0, 0.0, -1.0], [1.0, 1.0 / table.dial.natural, _WIDEST_SWAY, 1.0]
+        self._levels = Envelope(4, low, high, compiled=compiled)
         self._levels.move([self._row.sway, self._row.pupils], 0.0, [_SWAY, _PUPILS])
 
     @property
@@ -182,6 +186,7 @@ class LifeChannel:
             nostrils * other_air,
             presence * (wider + movement * left),
             presence * (wider + movement * right),
+            moved * figures.chest * full,
         )
         return True
 

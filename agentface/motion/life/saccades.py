@@ -22,10 +22,10 @@ class Saccades:
         head: what the head does of it.
     """
 
-    def __init__(self, figures: SaccadeFigures, random: np.random.Generator) -> None:
+    def __init__(self, figures: SaccadeFigures, random: np.random.Generator, *, compiled: bool = False) -> None:
         self._figures, self._random = figures, random
         reach = np.radians(figures.limit_deg)
-        self.eyes, self.head = Envelope(2, -reach, reach), Envelope(2, -reach, reach)
+        self.eyes, self.head = (Envelope(2, -reach, reach, compiled=compiled) for _ in range(2))
         self._state: StateRow | None = None
         self._often = 1.0
         self._aside = False

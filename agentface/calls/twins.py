@@ -2,18 +2,18 @@
 
 from __future__ import annotations
 
-from abc import ABC, abstractmethod
 from collections.abc import Iterable, Sequence
 from concurrent.futures import Future
 from typing import Any
 
 from agentface.bml.block import Block
+from agentface.calls.calls import Calls
 from agentface.motion.performance import Performance
-from agentface.requests import Gesture, Play, PlayBlock, Request, Say, Speak
+from agentface.requests import Gesture, Play, PlayBlock, Say, Speak
 from agentface.speech.phones import Phone
 
 
-class AwaitableTwins(ABC):
+class AwaitableTwins(Calls):
     """A face's calls for asyncio: each returns, once it is over, whether it came to its end.
 
     Whatever loop steps the face, in whatever thread, begins with its next step; they only wait. Wrong arguments are
@@ -21,10 +21,6 @@ class AwaitableTwins(ABC):
     Cancelled, what has not begun does not begin; a text or sounds that are being said are hushed, a performance and a
     block let go, and a gesture comes to its end.
     """
-
-    @abstractmethod
-    def ask(self, request: Request) -> Future[bool]:
-        """Have a request applied by the next step."""
 
     async def say_async(
         self,

@@ -1,0 +1,1 @@
+"""What can be asked of a face from Python: one method for each kind of request."""

@@ -1,0 +1,86 @@
+"""A performance in a page that needs nothing else."""
+
+from __future__ import annotations
+
+import json
+
+import numpy as np
+import pytest
+
+from agentface.clock import FrameClock
+from agentface.errors import InvalidValueError
+from agentface.face import Face
+from agentface.head.look import load_look
+from agentface.io.web.frames import FrameReader
+from agentface.io.web.performance_page import PerformancePage
+from agentface.live.loop import run
+from agentface.speech.sound import Sound
+from tests.io.web.page.files import settled
+from tests.io.web.page.served import rough_basis
+from tests.tools import require_page
+
+ELEMENT = "document.querySelector('agent-face')"
+FPS = 10.0
+
+
+@pytest.fixture(scope="module")
+def recorded():
+    """A face that becomes happy within a second, as a page; and the same as a sink kept it."""
+    face = Face("amber")
+    page = PerformancePage(face.model, load_look(face.model), rough_basis(face, "geometric"))
+    kept = []
+
+    class Keeper:
+        def show(self, frame):
+            kept.append(frame.copy())
+
+    face.set_emotion("happiness", 1.0)
+    run(face, FrameClock(FPS), sinks=[page, Keeper()], fps=FPS, duration=1.0)
+    return page, kept
+
+
+@pytest.mark.slow
+def test_a_recording_plays_without_a_server_and_without_a_network(chromium, tmp_path, recorded):
+    from tests.io.web.page.conftest import opened
+
+    page, kept = recorded
+    samples = (8000 * np.sin(np.arange(8000) * 0.3)).astype(np.int16)
+    path = tmp_path / "joy.html"
+    path.write_text(page.content(Sound(samples, 8000)))
+    with opened(chromium) as tab:
+        tab.context.set_offline(offline=True)
+        tab.goto(path.as_uri())
+        tab.wait_for_selector("button:not([hidden])")
+        stands = f"() => Array.from({ELEMENT}.face.skin.vertices)"
+        first = np.reshape(tab.evaluate(stands), (-1, 3))
+        tab.evaluate(f"{ELEMENT}.addEventListener('ended', () => {{ window.over = true; }})")
+        tab.click("button")
+        tab.wait_for_function("window.over")
+        last = np.reshape(tab.evaluate(stands), (-1, 3))
+    model = settled("amber")[0].model
+    reader = FrameReader(model, page._basis, page._writer.layouts["basis"])
+    for seen, message in ((first, page._messages[0]), (last, page._messages[-1])):
+        assert np.abs(seen - reader.read(message)[1]).max() < 1e-6
+    assert np.abs(last - first).max() > 0.003
+    assert len(kept) == len(page._messages)
+
+
+def test_a_page_holds_the_licences_of_what_is_in_it(recorded):
+    require_page()
+    content = recorded[0].content()
+    assert "three 0." in content
+    assert "Permission is hereby granted" in content
+    assert content.count("</script>") == content.count("<script") == 4
+    assert "http://" not in content.partition('<script type="module">')[0].replace("http://www.w3.org", "")
+
+
+def test_the_same_performance_gives_the_same_record(recorded):
+    record = json.loads(recorded[0].record())
+    assert record == json.loads(recorded[0].record())
+    assert record["sound"] is None
+
+
+def test_a_page_without_frames_is_refused(recorded):
+    model = settled("amber")[0].model
+    with pytest.raises(InvalidValueError, match="one frame or more"):
+        PerformancePage(model, load_look(model), recorded[0]._basis).record()
