@@ -77,7 +77,7 @@ $(FRAMEWORKS)/.installed: pyproject.toml
 	$(PYTHON) -m venv $(FRAMEWORKS)
 	$(FRAMEWORKS)/bin/python -m pip install --quiet --upgrade 'pip>=25.1'
 	$(FRAMEWORKS)/bin/python -m pip install --quiet --editable '.[pipecat,livekit]' --group test
-	$(FRAMEWORKS)/bin/python -m pip install --quiet --no-deps 'aiavatar>=0.9'
+	$(FRAMEWORKS)/bin/python -m pip install --quiet --no-deps 'aiavatar>=0.9.2'
 	@touch $@
 
 # what warnings the frameworks give is their own affair
