@@ -22,6 +22,9 @@ if TYPE_CHECKING:
     from agentface.io.gltf.recorder import SurfaceRecorder
 
 
+_SHAPES, _EXPRESSIONS = 52, 18 + 52
+
+
 @dataclass(frozen=True)
 class Asked:
     """What the options say."""
@@ -48,7 +51,7 @@ class Asked:
 @click.option(
     "--shapes",
     type=click.Choice(["arkit", "exact"]),
-    help="Of a .glb: ARKit's 52 shapes, or those that are the performance's own. If not given, exact with a performance.",
+    help="Of a .glb: ARKit's 52, or the performance's own; if not given, these where there is a performance.",
 )
 @click.option(
     "--error-mm",
@@ -99,7 +102,7 @@ def _glb(asked: Asked) -> dict[str, Any]:
     with until_told() as ending:
         played = None if found is None else _playing(face, found, asked.fps, ending)
         if shapes == "arkit":
-            with progress("shapes", 52) as told:
+            with progress("shapes", _SHAPES) as told:
                 file = made.with_arkit(played, told)
         else:
             assert played is not None, "checked above"  # noqa: S101 - for the type checker
@@ -108,6 +111,22 @@ def _glb(asked: Asked) -> dict[str, Any]:
     sound = None if found is None else _write_sound(found, asked.output)
     _tell_figures(asked.output, file.figures)
     return {"format": "glb", "kind": shapes, **file.figures, "sound": sound}
+
+
+def _vrm(asked: Asked) -> dict[str, Any]:
+    from agentface.deform.protocol import make_deformer
+    from agentface.io.files import write_file
+    from agentface.io.vrm.avatar import encode_avatar
+
+    for name, given in (("--performance", asked.performance), ("--shapes", asked.shapes)):
+        if given is not None:
+            raise click.UsageError(f"{name} goes with a .glb; an avatar has its own expressions, and no animation")
+    face = make_face(asked.face, asked.deformer, look=asked.look, running=True)
+    with progress("expressions", _EXPRESSIONS) as told:
+        made = encode_avatar(face, _look(face, asked.look), make_deformer(asked.deformer, face.model), told)
+    write_file(asked.output, made.content)
+    _tell_figures(asked.output, made.figures)
+    return {"format": "vrm", **made.figures}
 
 
 def _playing(face: Face, found: Opened, fps: float | None, ending: Ending) -> Callable[[SurfaceRecorder], None]:
@@ -168,4 +187,5 @@ def _tell_figures(output: Path, figures: dict[str, Any]) -> None:
     tell(said)
 
 
-_KINDS: dict[str, Callable[[Asked], dict[str, Any]]] = {".glb": _glb}
+_KINDS: dict[str, Callable[[Asked], dict[str, Any]]] = {".glb": _glb, ".vrm": _vrm}
+"""What writes a file, by its ending; it returns the figures of ``--json``."""

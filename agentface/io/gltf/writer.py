@@ -121,16 +121,16 @@ class GltfWriter(GltfBuffer):
         return {"JOINTS_0": self.attribute("JOINTS_0", joints), "WEIGHTS_0": self.attribute("WEIGHTS_0", weights)}
 
     def _target(self, name: str, target: Target) -> dict[str, int]:
-        found = {"POSITION": self._offsets(name, target.places, _STILL_M)}
+        found = {"POSITION": self._offsets(name, "POSITION", target.places, _STILL_M)}
         if target.normals is not None:
-            found["NORMAL"] = self._offsets(name, target.normals, _STILL_NORMAL)
+            found["NORMAL"] = self._offsets(name, "NORMAL", target.normals, _STILL_NORMAL)
         return found
 
-    def _offsets(self, name: str, offsets: Floats, still: float) -> int:
+    def _offsets(self, shape: str, name: str, offsets: Floats, still: float) -> int:
         moved = np.flatnonzero(np.abs(offsets).max(axis=1) > still).astype(np.int32)
         if len(moved) <= _SPARSE * len(offsets):
-            return self.sparse(name, moved, offsets[moved], len(offsets))
-        return self.numbers(offsets)
+            return self.sparse(f"shape {shape}", moved, offsets[moved], len(offsets))
+        return self.attribute(name, np.asarray(offsets, np.float32))
 
 
 class Track(NamedTuple):

@@ -22,7 +22,7 @@ from agentface.io.web.audio import pieces, silence
 from agentface.io.web.guard import guarded
 from agentface.io.web.hub import Client, Hub
 from agentface.io.web.inbox import Inbox
-from agentface.io.web.stage import HeadEncoder, Measure, FaceStage, basis_of, encode_head_file
+from agentface.io.web.stage import FaceStage, HeadEncoder, Measure, basis_of, encode_head_file
 from agentface.live.loop import Frame
 from agentface.speech.sound import Sound
 
@@ -38,8 +38,7 @@ class WebServer:
     """Serves pages that show faces, from its making until ``close``; as a context manager, until the block ends.
 
     A source and a sink for :func:`agentface.live.loop.run`: it asks of the faces what pages ask, and gives pages their
-    frames. A program with a loop of its own calls ``take_in`` before each step, and ``show`` after it, or pages get each
-    frame a step later.
+    frames. A program with a loop of its own calls ``take_in`` before each step and ``show`` after it.
 
     Args:
         faces: a face, which is called by its own name, or at most eight by their ids.
@@ -87,7 +86,7 @@ class WebServer:
         self._voices = {name: _Voice(stage.face, partial(self._tell, name)) for name, stage in self._stages.items()}
         self._socket = _listen(host, port)
         self.host, self.port = self._socket.getsockname()[:2]
-        self._frame, self._owed = 0, False
+        self._frame = 0
         self._loop: asyncio.AbstractEventLoop | None = None
         self._server = uvicorn.Server(self._config(uvicorn))
         self._thread = threading.Thread(target=self._serve, name="agentface-web", daemon=True)
@@ -106,28 +105,18 @@ class WebServer:
         return f"http://{host}:{self.port}/{query}"
 
     def take_in(self, time_s: float = 0.0) -> None:
-        """Do what pages have asked since the last call; the step that follows begins at ``time_s``.
-
-        Where the server is no sink, pages get the frame of the step before.
-        """
-        if self._owed:
-            self._send(time_s)
-        self._owed = True
+        """Do what pages have asked since the last call; the step that follows begins at ``time_s``."""
         for voice in self._voices.values():
             voice.now_s = time_s
         self._inbox.take_in()
 
     def show(self, frame: Frame) -> None:
         """Give pages the faces as the last step left them."""
-        self._owed = False
-        self._send(frame.time_s)
-
-    def _send(self, time_s: float) -> None:
         self._frame += 1
         for name, modes in self._hub.wanted.items():
             stage = self._stages[name]
             for mode in modes:
-                message = stage.writer.write(mode, self._frame, time_s, stage.face.geometry)
+                message = stage.writer.write(mode, self._frame, frame.time_s, stage.face.geometry)
                 self._call(self._hub.show, name, mode, self._frame, message)
 
     def close(self) -> None:
