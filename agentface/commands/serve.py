@@ -119,27 +119,28 @@ def serve(
     faces = vmc.first(_by_id(made, ids))
     name = next(iter(faces))
     rate = fps or (30.0 if record else 60.0)
-    with (
-        until_told() as ending,
-        OscServer(faces if ids or len(made) > 1 else made[0], *osc) as server,
-        vmc_links(name, faces[name], vmc) as links,
-        _heard(faces),
-        served_pages(faces, pages, deformer, look, rate) as servers,
-    ):
-        ways = _Ways(server, links, servers)
+    with until_told() as ending, _heard(faces), ExitStack() as stack:
+        ways = _Ways(
+            stack.enter_context(OscServer(faces if ids or len(made) > 1 else made[0], *osc)),
+            stack.enter_context(vmc_links(name, faces[name], vmc)),
+            stack.enter_context(served_pages(faces, pages, deformer, look, rate)),
+        )
+        end = duration or math.inf
         if view == "window":
             _in_a_window(ways, faces, ending, look, quality, camera)
-            return
-        end = duration or math.inf
-        if record is None:
+        elif record is None:
             _run(ways, faces, ending, rate, end)
-            return
-        shot = Shot(record, size, camera, quality or "fast", rate, look, live=True)
-        if every_frame:
-            again = make_face(names[0], deformer, look=look, liveliness=liveliness)
-            _film_later(ways, faces, ending, shot, end, again)
         else:
-            _film_now(ways, faces, ending, shot, end)
+            shot = Shot(record, size, camera, quality or "fast", rate, look, live=True)
+            again = make_face(names[0], deformer, look=look, liveliness=liveliness) if every_frame else None
+            _film(ways, faces, ending, shot, end, again)
+
+
+def _film(ways: _Ways, faces: Mapping[str, Face], ending: Ending, shot: Shot, end: float, again: Face | None) -> None:
+    if again is None:
+        _film_now(ways, faces, ending, shot, end)
+    else:
+        _film_later(ways, faces, ending, shot, end, again)
 
 
 @dataclass(frozen=True)
@@ -272,7 +273,7 @@ def _film_now(ways: _Ways, faces: Mapping[str, Face], ending: Ending, shot: Shot
     face, last_s = _only(faces), duration if math.isfinite(duration) else None
     with LiveSound(face, SOUND_HZ) as sound, LiveSink(lambda: shot.open(face.model, last_s, sound)) as film:
         _announce(faces, ways)
-        sinks = [sound, film, *ways.sinks]
+        sinks: list[Sink] = [sound, film, *ways.sinks]
         frames = run(face, SystemClock(), ways.sources, sinks, fps=shot.fps, duration=duration, stopped=ending.told)
     if film.dropped:
         lost = f"{film.dropped} of {frames} frames are left out, as this machine draws too slowly for them"
@@ -302,7 +303,7 @@ def _film_later(
         pass  # what cannot be written or drawn is told before the recording
     _announce(faces, ways)
     with Recorder(face) as recorder, HeardRecorder(face, recorder, shot.fps) as heard:
-        sinks = [recorder, *ways.sinks]
+        sinks: list[Sink] = [recorder, *ways.sinks]
         run(face, SystemClock(), ways.sources, sinks, fps=shot.fps, duration=duration, stopped=ending.told)
     if recorder.last_s is None:
         return
