@@ -101,13 +101,7 @@ def serve(
     agentface serve --face amber --id left --face onyx --id right
     agentface serve --vmc 127.0.0.1:39539 --vmc-in 127.0.0.1:39540
     """  # noqa: D301 - \b is click's mark of lines to keep
-    _check_options(
-        given(ctx),
-        window=view == "window",
-        record=record is not None,
-        several=len(names) > 1,
-        web=pages is not None,
-    )
+    _check_options(given(ctx), window=view == "window", record=bool(record), several=len(names) > 1, web=bool(pages))
     _check_ids(names, ids)
     check_vmc(given(ctx), vmc)
     from agentface.io.osc.server import OscServer

@@ -84,8 +84,6 @@ class WebServer:
         }
         self._hub, self._inbox = Hub(), Inbox()
         self._voices = {name: _Voice(stage.face, partial(self._tell, name)) for name, stage in self._stages.items()}
-        self._socket = _listen(host, port)
-        self.host, self.port = self._socket.getsockname()[:2]
         self._frame = 0
         self._loop: asyncio.AbstractEventLoop | None = None
         self._server = uvicorn.Server(self._config(uvicorn))
