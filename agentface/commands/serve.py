@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from contextlib import ExitStack, contextmanager
+from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -34,6 +35,7 @@ if TYPE_CHECKING:
 
     from agentface.face import Face
     from agentface.io.osc.server import OscServer
+    from agentface.io.web.server import WebServer
     from agentface.live.loop import Sink, Source
 
 _RECORD = "Film the face; a name like face-%05d.png gives numbered transparent pictures instead."
@@ -100,13 +102,7 @@ def serve(
     agentface serve --face amber --id left --face onyx --id right
     agentface serve --vmc 127.0.0.1:39539 --vmc-in 127.0.0.1:39540
     """  # noqa: D301 - \b is click's mark of lines to keep
-    _check_options(
-        given(ctx),
-        window=view == "window",
-        record=record is not None,
-        several=len(names) > 1,
-        web=pages is not None,
-    )
+    _check_options(given(ctx), window=view == "window", record=bool(record), several=len(names) > 1, web=bool(pages))
     _check_ids(names, ids)
     check_vmc(given(ctx), vmc)
     from agentface.io.osc.server import OscServer
@@ -118,26 +114,45 @@ def serve(
     faces = vmc.first(_by_id(made, ids))
     name = next(iter(faces))
     rate = fps or (30.0 if record else 60.0)
-    with (
-        until_told() as ending,
-        OscServer(faces if ids or len(made) > 1 else made[0], *osc) as server,
-        vmc_links(name, faces[name], vmc) as links,
-        _heard(faces),
-        served_pages(faces, pages, deformer, look, rate, links),
-    ):
-        if view == "window":
-            _in_a_window(server, links, faces, ending, look, quality, camera)
-            return
+    with until_told() as ending, _heard(faces), ExitStack() as stack:
+        ways = _Ways(
+            stack.enter_context(OscServer(faces if ids or len(made) > 1 else made[0], *osc)),
+            stack.enter_context(vmc_links(name, faces[name], vmc)),
+            stack.enter_context(served_pages(faces, pages, deformer, look, rate)),
+        )
         end = duration or math.inf
-        if record is None:
-            _run(server, links, faces, ending, rate, end)
-            return
-        shot = Shot(record, size, camera, quality or "fast", rate, look, live=True)
-        if every_frame:
-            again = make_face(names[0], deformer, look=look, liveliness=liveliness)
-            _film_later(server, links, faces, ending, shot, end, again)
+        if view == "window":
+            _in_a_window(ways, faces, ending, look, quality, camera)
+        elif record is None:
+            _run(ways, faces, ending, rate, end)
         else:
-            _film_now(server, links, faces, ending, shot, end)
+            shot = Shot(record, size, camera, quality or "fast", rate, look, live=True)
+            again = make_face(names[0], deformer, look=look, liveliness=liveliness) if every_frame else None
+            _film(ways, faces, ending, shot, end, again)
+
+
+def _film(ways: _Ways, faces: Mapping[str, Face], ending: Ending, shot: Shot, end: float, again: Face | None) -> None:
+    if again is None:
+        _film_now(ways, faces, ending, shot, end)
+    else:
+        _film_later(ways, faces, ending, shot, end, again)
+
+
+@dataclass(frozen=True)
+class _Ways:
+    """How a face is reached, and where its frames go beside what is drawn."""
+
+    osc: OscServer
+    vmc: Links
+    pages: Sequence[WebServer]
+
+    @property
+    def sources(self) -> list[Source]:
+        return [self.osc, *self.vmc.sources, *self.pages]
+
+    @property
+    def sinks(self) -> list[Sink]:
+        return [*self.vmc.sinks, *self.pages]
 
 
 def _check_options(names: set[str], *, window: bool, record: bool, several: bool, web: bool) -> None:
@@ -201,10 +216,10 @@ def _heard(faces: Mapping[str, Face]) -> Iterator[None]:
         yield
 
 
-def _announce(faces: Mapping[str, Face], server: OscServer, links: Links) -> None:
+def _announce(faces: Mapping[str, Face], ways: _Ways) -> None:
     called = [name if name == face.model.name else f"{name} ({face.model.name})" for name, face in faces.items()]
-    say(f"{' and '.join(called)} listen{'s' * (len(called) == 1)} to OSC on {server.host}:{server.port}")
-    links.announce()
+    say(f"{' and '.join(called)} listen{'s' * (len(called) == 1)} to OSC on {ways.osc.host}:{ways.osc.port}")
+    ways.vmc.announce()
 
 
 def _only(faces: Mapping[str, Face]) -> Face:
@@ -213,8 +228,7 @@ def _only(faces: Mapping[str, Face]) -> Face:
 
 
 def _in_a_window(
-    server: OscServer,
-    links: Links,
+    ways: _Ways,
     faces: Mapping[str, Face],
     ending: Ending,
     look: str | None,
@@ -224,13 +238,12 @@ def _in_a_window(
     from agentface.commands.show import make_window
 
     window = make_window(_only(faces), look=look, quality=quality, camera=camera)
-    _announce(faces, server, links)
-    window.run([server, *links.sources], links.sinks, stopped=ending.told)
+    _announce(faces, ways)
+    window.run(ways.sources, ways.sinks, stopped=ending.told)
 
 
 def _run(
-    server: OscServer,
-    links: Links,
+    ways: _Ways,
     faces: Mapping[str, Face],
     ending: Ending,
     fps: float,
@@ -240,14 +253,12 @@ def _run(
     from agentface.live.loop import run
 
     face, *beside = faces.values()
-    _announce(faces, server, links)
-    sources = [server, *links.sources]
-    run(face, SystemClock(), sources, links.sinks, fps=fps, duration=duration, stopped=ending.told, beside=beside)
+    _announce(faces, ways)
+    clock, end = SystemClock(), ending.told
+    run(face, clock, ways.sources, ways.sinks, fps=fps, duration=duration, stopped=end, beside=beside)
 
 
-def _film_now(
-    server: OscServer, links: Links, faces: Mapping[str, Face], ending: Ending, shot: Shot, duration: float
-) -> None:
+def _film_now(ways: _Ways, faces: Mapping[str, Face], ending: Ending, shot: Shot, duration: float) -> None:
     from agentface.clock import SystemClock
     from agentface.io.video import SOUND_HZ
     from agentface.live.heard import LiveSound
@@ -256,18 +267,16 @@ def _film_now(
 
     face, last_s = _only(faces), duration if math.isfinite(duration) else None
     with LiveSound(face, SOUND_HZ) as sound, LiveSink(lambda: shot.open(face.model, last_s, sound)) as film:
-        _announce(faces, server, links)
-        sources: list[Source] = [server, *links.sources]
-        sinks: list[Sink] = [sound, film, *links.sinks]
-        frames = run(face, SystemClock(), sources, sinks, fps=shot.fps, duration=duration, stopped=ending.told)
+        _announce(faces, ways)
+        sinks: list[Sink] = [sound, film, *ways.sinks]
+        frames = run(face, SystemClock(), ways.sources, sinks, fps=shot.fps, duration=duration, stopped=ending.told)
     if film.dropped:
         lost = f"{film.dropped} of {frames} frames are left out, as this machine draws too slowly for them"
         tell(f"{shot.path}: {lost}; --every-frame films all of them")
 
 
 def _film_later(
-    server: OscServer,
-    links: Links,
+    ways: _Ways,
     faces: Mapping[str, Face],
     ending: Ending,
     shot: Shot,
@@ -287,10 +296,10 @@ def _film_later(
     face = _only(faces)
     with shot.open(face.model):
         pass  # what cannot be written or drawn is told before the recording
-    _announce(faces, server, links)
+    _announce(faces, ways)
     with Recorder(face) as recorder, HeardRecorder(face, recorder, shot.fps) as heard:
-        sources, sinks = [server, *links.sources], [recorder, *links.sinks]
-        run(face, SystemClock(), sources, sinks, fps=shot.fps, duration=duration, stopped=ending.told)
+        sinks: list[Sink] = [recorder, *ways.sinks]
+        run(face, SystemClock(), ways.sources, sinks, fps=shot.fps, duration=duration, stopped=ending.told)
     if recorder.last_s is None:
         return
     ending.go_on()  # told to stop again, it keeps what is drawn
