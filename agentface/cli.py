@@ -16,6 +16,7 @@ COMMANDS = (
     "sheet",
     "serve",
     "show",
+    "mcp",
     "play",
     "say",
     "convert",

@@ -20,15 +20,15 @@ from agentface.conventions import SIDES, Floats, check_range
 from agentface.errors import InvalidValueError, UnknownNameError
 from agentface.named_array import NamedArray
 
-Kind = Literal["vector", "pseudo", "morph", "jaw", "tongue", "eye", "gaze", "head", "contact"]
+Kind = Literal["vector", "pseudo", "morph", "jaw", "tongue", "eye", "gaze", "head", "contact", "chest"]
 """What moves: a vector muscle, a muscle of another form, skin by a shape (``morphs.yaml``), jaw, tongue, an eyeball or
-its pupil, the gaze, the head, lips until they touch something (:mod:`agentface.deform.mouth.contact`)."""
+its pupil, the gaze, the head, lips until they touch something (:mod:`agentface.deform.mouth.contact`), the chest."""
 Unit = Literal["contraction", "opening", "share", "rad"]
 """Contractions and openings are 0..1, at 0 where the face is at rest. A share is that of a whole movement, -1 of the
 opposite one. Angles have a sign, too."""
-Group = Literal["brow", "eyes", "nose and cheek", "mouth", "jaw", "tongue", "ears", "gaze", "head"]
+Group = Literal["brow", "eyes", "nose and cheek", "mouth", "jaw", "tongue", "ears", "gaze", "head", "chest"]
 GROUPS: tuple[Group, ...] = get_args(Group)
-"""From the top of the face down, and then what turns."""
+"""From the top of the face down, then what turns, and what is below."""
 Way = Literal["replace", "max", "add", "scale"]
 """How what a channel asks is blended with what is there already: see :mod:`agentface.motion.mixer`."""
 WAYS: tuple[Way, ...] = get_args(Way)
@@ -149,6 +149,7 @@ _TABLE: dict[str, _Row] = {
     "eye_thrust": _share("eyes", "the eyeball comes out of its socket, or sinks into it", kind="eye"),
     "lip_seal": _contact("draws the lips together, whatever parts them: p, b, m"),
     "lip_bite": _contact("brings the edge of the lower lip to the upper incisors: f, v"),
+    "breath": _Row("chest", "chest", "fills the chest and lifts the shoulders", False, "share", way="add"),
 }
 
 

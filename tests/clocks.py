@@ -71,7 +71,7 @@ class ServedClock(ManualClock):
 
 def send(server: OscServer, packet: bytes) -> None:
     """Send a datagram to a server that waits, and come back when it is there."""
-    before = len(server._waiting)
+    before = len(server._listener.waiting)
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as client:
         client.sendto(packet, (server.host, server.port))
-    until(lambda: len(server._waiting) > before)
+    until(lambda: len(server._listener.waiting) > before)

@@ -60,8 +60,9 @@ def test_make_demo_films_an_agent_in_another_process(tmp_path):
 def test_the_agent_tells_what_the_face_says_in_the_end():
     """A face that is slow to start answers all that it was asked meanwhile, and the agent asks once a half second."""
     taken, said = told_to_a_face("--mute", refused="/agentface/emotions", slow=3)
-    assert [address for address, _ in taken].count("/agentface/status") == 4
-    assert len(taken) == 12
+    asked = [address for address, _ in taken].count("/agentface/status")
+    assert asked >= 4, "and oftener where this face is slow to answer later, too"
+    assert len(taken) - asked == 8
     assert "the face took 8 messages" in said
     assert said.count("the face says: /agentface/emotions no really") == 7
 
@@ -85,7 +86,7 @@ def test_without_a_voice_the_agent_lets_the_mouth_say_a_recording():
 
 def told_to_a_face(*arguments: object, refused: str = "", slow: int = 1) -> tuple[list[tuple[str, list]], str]:
     """What the agent tells a face, and what it prints; the face speaks for two questions after it is told to."""
-    agent = ["osc_agent.py", "--wait", 20, "--pace", 50, *arguments, "--osc"]
+    agent = ["osc_agent.py", "--wait", 200, "--pace", 50, *arguments, "--osc"]
     taken: list[tuple[str, list]] = []
     speaks = 0
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as face, ThreadPoolExecutor() as pool:

@@ -12,12 +12,14 @@ import sys
 import threading
 from types import SimpleNamespace
 
+import click
 import numpy as np
 import pytest
 from click.testing import CliRunner
 
 from agentface import Face
 from agentface.cli import cli
+from agentface.commands.vmc import VmcOptions
 from tests.clocks import ServedClock
 
 
@@ -46,6 +48,93 @@ def test_a_taken_port_is_one_clear_message():
 )
 def test_usage(options):
     fail(*options, code=2)
+
+
+@pytest.mark.parametrize(
+    ("options", "told"),
+    [
+        (["--vmc", "39539"], "expected HOST:PORT"),
+        (["--vmc-in", "127.0.0.1:99999"], "expected HOST:PORT"),
+        (["--vmc", "127.0.0.1:39539", "--vmc-names", "vrm"], "'vrm0', 'vrm1'"),
+        (["--vmc-names", "vrm1"], "--vmc-names goes with --vmc"),
+        (["--vmc-axes", "gltf"], "--vmc-axes goes with --vmc or --vmc-in"),
+        (["--vmc-id", "amber"], "--vmc-id goes with --vmc or --vmc-in"),
+        (["--vmc", "127.0.0.1:39539", "--vmc-in", "127.0.0.1:39539"], "the face would drive itself"),
+    ],
+)
+def test_usage_of_vmc(options, told):
+    assert told in fail("--osc", "127.0.0.1:0", "--duration", "0.1", *options, code=2)
+
+
+def test_vmc_is_for_the_first_face_or_the_one_that_is_named():
+    faces = {"left": object(), "right": object()}
+
+    def options(name):
+        return VmcOptions(("127.0.0.1", 1), None, "vrm0", "unity", name)
+
+    assert list(options(None).first(faces)) == ["left", "right"]
+    assert list(options("right").first(faces)) == ["right", "left"]
+    with pytest.raises(click.UsageError, match="expected one of left, right, got 'up'"):
+        options("up").first(faces)
+
+
+@pytest.mark.slow
+def test_vmc_of_one_of_several_faces():
+    """A tracker's head turns the face that is named, and the avatar gets that one's."""
+    from agentface.io.osc.codec import decode
+
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as avatar:
+        avatar.bind(("127.0.0.1", 0))
+        avatar.settimeout(10)
+        words = ("--face", "amber", "--id", "left", "--face", "onyx", "--id", "right", "--liveliness", "0")
+        linked = ("--vmc", f"127.0.0.1:{avatar.getsockname()[1]}", "--vmc-in", "127.0.0.1:0")
+        linked += ("--vmc-id", "right", "--vmc-names", "arkit")
+        result = call("--osc", "127.0.0.1:0", "--duration", "0.2", *words, *linked)
+        assert result.exit_code == 0, result.output
+        sent = decode(avatar.recv(65536))
+        assert f"right is sent by VMC to 127.0.0.1:{avatar.getsockname()[1]}" in result.output
+    assert "right is driven by VMC on 127.0.0.1:" in result.output
+    assert [message.address for message in sent].count("/VMC/Ext/Blend/Val") == 52
+
+
+@pytest.mark.slow
+def test_a_taken_port_of_vmc_is_one_clear_message():
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as taken:
+        taken.bind(("127.0.0.1", 0))
+        port = taken.getsockname()[1]
+        told = fail("--osc", "127.0.0.1:0", "--vmc-in", f"127.0.0.1:{port}", "--duration", "1")
+    assert f"port {port}" in told
+    assert "--vmc-in HOST:PORT" in told
+
+
+@pytest.mark.slow
+def test_a_tracker_s_smile_leaves_for_an_avatar():
+    """A whole server: what comes by VMC moves the face, and leaves by VMC."""
+    from agentface.io.osc.codec import decode
+    from agentface.io.vmc.bundle import FrameBundle
+
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as avatar:
+        avatar.bind(("127.0.0.1", 0))
+        avatar.settimeout(200)
+        linked = ("--vmc", f"127.0.0.1:{avatar.getsockname()[1]}", "--vmc-in", "127.0.0.1:0")
+        command = [sys.executable, "-m", "agentface", "serve", "--osc", "127.0.0.1:0", "--liveliness", "0", *linked]
+        environment = os.environ | {"PYTHONUNBUFFERED": "1"}
+        with subprocess.Popen(command, stdout=subprocess.PIPE, text=True, env=environment) as server:
+            watchdog = threading.Timer(120, server.kill)
+            watchdog.start()
+            try:
+                server.stdout.readline()
+                port = int(re.search(r"driven by VMC on 127.0.0.1:(\d+)", server.stdout.readline())[1])
+                smile = FrameBundle(["Joy"]).packet(0.0, [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0] * 4, [1.0])
+                shown = 0.0
+                while shown < 0.5:
+                    avatar.sendto(smile, ("127.0.0.1", port))
+                    values = [m.arguments for m in decode(avatar.recv(65536)) if m.address == "/VMC/Ext/Blend/Val"]
+                    shown = dict(values)["Joy"]
+            finally:
+                watchdog.cancel()
+                server.terminate()
+    assert server.returncode == 0
 
 
 @pytest.mark.slow
@@ -121,7 +210,7 @@ def test_it_films_and_shows_a_look(tmp_path, monkeypatch, counted):
     assert (picture != Face().render((96, 64), alpha=True)).any()
 
     shown = []
-    window = SimpleNamespace(run=lambda sources, stopped: shown.append((len(sources), stopped())))
+    window = SimpleNamespace(run=lambda sources, sinks, stopped: shown.append((len(sources), stopped())))
 
     def make_window(face, **options):
         shown.append(tuple(options.values()))

@@ -28,6 +28,7 @@ PACKAGES = {
     "npm": "npm",
     "flite": "flite",
     "chromium": "chromium",
+    "blender": "blender",
 }
 """The Debian packages in which the programs are; the Makefile installs them."""
 LIBRARIES = {"libespeak-ng.so.1": "libespeak-ng1"}

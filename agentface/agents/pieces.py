@@ -55,10 +55,12 @@ class SegmentEnd:
 
     Attributes:
         time_s: when it ends, on the same clock.
+        text: what was said; None for a sound.
         error: what went wrong with a text; None where it was said.
     """
 
     time_s: float
+    text: str | None = None
     error: AgentFaceError | None = None
 
 

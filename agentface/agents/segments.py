@@ -24,12 +24,13 @@ class TextSegment:
     """A text, and what becomes of it.
 
     Attributes:
+        say: what is asked of the face.
         doing: None until the face was asked to say it.
         error: what went wrong.
     """
 
     def __init__(self, say: Say) -> None:
-        self._say = say
+        self.say = say
         self.doing: Doing | None = None
         self.error: AgentFaceError | None = None
 
@@ -45,7 +46,7 @@ class TextSegment:
         """Have a face say it when its turn has come."""
         self.doing = Doing()
         try:
-            doing = face.apply(self._say)
+            doing = face.apply(self.say)
         except AgentFaceError as error:
             self.error = error
             self.doing.end(whole=False)

@@ -50,8 +50,8 @@ class SoundSegment:
     def push(self, samples: Samples, rate_hz: int, channels: int, now: float) -> None:
         """Take the next piece, ``(N,)`` int16, its channels in turn, that comes ``now``; raises InvalidValueError."""
         with self._lock:
-            if self._resampler is None or self._format != (rate_hz, channels):
-                resampler = Resampler(rate_hz, channels, self._rate_hz)
+            if self._resampler is None or self._format != (rate_hz, channels) or type(rate_hz) is not int:
+                resampler = Resampler(rate_hz, channels, self._rate_hz)  # refuses what is no rate
                 self._finish()
                 self._resampler, self._format = resampler, (rate_hz, channels)
             self._bytes += self._resampler.feed(samples).tobytes()

@@ -245,7 +245,7 @@ class Speaker:
         for text in self._queue.texts:
             if not text.over or not self._queue.drop(text):
                 break
-            ends.append(SegmentEnd(last / self.rate_hz, text.error))
+            ends.append(SegmentEnd(last / self.rate_hz, text.say.text, text.error))
         said = self._line.take(first, last)
         if said is None:
             return given, ends

@@ -18,8 +18,10 @@ from agentface.commands.streams import tell
 
 if TYPE_CHECKING:
     from agentface.face import Face
-    from agentface.head.look import Look
     from agentface.io.gltf.recorder import SurfaceRecorder
+
+
+_SHAPES, _EXPRESSIONS = 52, 18 + 52
 
 
 @dataclass(frozen=True)
@@ -48,7 +50,7 @@ class Asked:
 @click.option(
     "--shapes",
     type=click.Choice(["arkit", "exact"]),
-    help="Of a .glb: ARKit's 52 shapes, or those that are the performance's own. If not given, exact with a performance.",
+    help="Of a .glb: ARKit's 52, or the performance's own; if not given, these where there is a performance.",
 )
 @click.option(
     "--error-mm",
@@ -87,6 +89,7 @@ def export(*, json_file: str | None, **options: Any) -> None:
 
 def _glb(asked: Asked) -> dict[str, Any]:
     from agentface.deform.protocol import make_deformer
+    from agentface.head.look import load_look
     from agentface.io.files import write_file
     from agentface.io.gltf.face_glb import FaceGlb
 
@@ -95,11 +98,11 @@ def _glb(asked: Asked) -> dict[str, Any]:
         raise click.UsageError("--shapes exact goes with --performance FILE, whose shapes they are")
     found = None if asked.performance is None else opened(asked.performance, asked.file_fps)
     face = make_face(asked.face, asked.deformer, look=asked.look, running=True)
-    made = FaceGlb(face.model, _look(face, asked.look), make_deformer(asked.deformer, face.model))
+    made = FaceGlb(face.model, load_look(face.model, asked.look), make_deformer(asked.deformer, face.model))
     with until_told() as ending:
         played = None if found is None else _playing(face, found, asked.fps, ending)
         if shapes == "arkit":
-            with progress("shapes", 52) as told:
+            with progress("shapes", _SHAPES) as told:
                 file = made.with_arkit(played, told)
         else:
             assert played is not None, "checked above"  # noqa: S101 - for the type checker
@@ -108,6 +111,25 @@ def _glb(asked: Asked) -> dict[str, Any]:
     sound = None if found is None else _write_sound(found, asked.output)
     _tell_figures(asked.output, file.figures)
     return {"format": "glb", "kind": shapes, **file.figures, "sound": sound}
+
+
+def _vrm(asked: Asked) -> dict[str, Any]:
+    from agentface.deform.protocol import make_deformer
+    from agentface.head.look import load_look
+    from agentface.head.model import load_model
+    from agentface.io.files import write_file
+    from agentface.io.vrm.avatar import encode_avatar
+
+    for name, given in (("--performance", asked.performance), ("--shapes", asked.shapes)):
+        if given is not None:
+            raise click.UsageError(f"{name} goes with a .glb; an avatar has its own expressions, and no animation")
+    model = load_model(asked.face)
+    look, deformer = load_look(model, asked.look), make_deformer(asked.deformer, model)
+    with progress("expressions", _EXPRESSIONS) as told:
+        made = encode_avatar(model, look, deformer, told)
+    write_file(asked.output, made.content)
+    _tell_figures(asked.output, made.figures)
+    return {"format": "vrm", **made.figures}
 
 
 def _playing(face: Face, found: Opened, fps: float | None, ending: Ending) -> Callable[[SurfaceRecorder], None]:
@@ -140,12 +162,6 @@ def _playing(face: Face, found: Opened, fps: float | None, ending: Ending) -> Ca
     return play
 
 
-def _look(face: Face, look: str | None) -> Look:
-    from agentface.head.look import load_look
-
-    return load_look(face.model, look)
-
-
 def _write_sound(found: Opened, output: Path) -> str | None:
     """The sound of a performance, beside the file; returns its path."""
     from agentface.io.sound import write_wav
@@ -168,4 +184,5 @@ def _tell_figures(output: Path, figures: dict[str, Any]) -> None:
     tell(said)
 
 
-_KINDS: dict[str, Callable[[Asked], dict[str, Any]]] = {".glb": _glb}
+_KINDS: dict[str, Callable[[Asked], dict[str, Any]]] = {".glb": _glb, ".vrm": _vrm}
+"""What writes a file, by its ending; it returns the figures of ``--json``."""

@@ -15,9 +15,9 @@ if TYPE_CHECKING:
     from agentface.deform.geometry import FaceGeometry
     from agentface.head.model import HeadModel
     from agentface.io.sequence import SequenceWriter
+    from agentface.io.sound_track import Heard
     from agentface.io.video import VideoWriter
     from agentface.live.films import FilmSink
-    from agentface.speech.sound import Sound
 
 
 @dataclass(frozen=True)
@@ -36,7 +36,7 @@ class Shot:
     live: bool = False
 
     @contextmanager
-    def open(self, model: HeadModel, last_s: float | None = None, sound: Sound | None = None) -> Iterator[FilmSink]:
+    def open(self, model: HeadModel, last_s: float | None = None, sound: Heard | None = None) -> Iterator[FilmSink]:
         """Films ``model`` until the end of the block; the bar is full at ``last_s``, without it there is none.
 
         ``sound`` is heard from its start; numbered pictures come without it.
@@ -67,7 +67,7 @@ class Shot:
     def _transparent(self) -> bool:
         return self.path.suffix.lower() == ".png"
 
-    def _writer(self, sound: Sound | None) -> VideoWriter | SequenceWriter:
+    def _writer(self, sound: Heard | None) -> VideoWriter | SequenceWriter:
         if self._transparent:
             from agentface.io.sequence import SequenceWriter
 

@@ -190,7 +190,7 @@ def make_face(
     """
     from agentface.face import Face
 
-    with _wait_told(face, compiled=compiled):
+    with wait_told(face, compiled=compiled):
         made = Face(face, deformer=deformer, compiled=compiled, look=look, liveliness=liveliness, seed=seed)
         if running:
             made.warm_up()
@@ -198,7 +198,8 @@ def make_face(
 
 
 @contextmanager
-def _wait_told(face: str, *, compiled: bool) -> Iterator[None]:
+def wait_told(face: str, *, compiled: bool) -> Iterator[None]:
+    """Have a terminal told that kernels are compiled in the block, the first time on a machine."""
     terminal = console()
     if not terminal.is_terminal:
         yield

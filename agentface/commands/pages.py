@@ -10,12 +10,12 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
+from agentface.commands.links import Links
 from agentface.commands.options import optional_address
-from agentface.commands.streams import say, tell
+from agentface.commands.streams import tell
 
 if TYPE_CHECKING:
     from agentface.face import Face
-    from agentface.io.web.server import WebServer
 
 _Command = TypeVar("_Command", bound=Callable[..., Any])
 _WEB = "Serve a page with the face, such as 127.0.0.1:8080, and take the messages of OSC as JSON; needs the extra web."
@@ -54,16 +54,17 @@ def web_options(command: _Command) -> _Command:
 
 @contextmanager
 def served_pages(
-    faces: Mapping[str, Face], asked: PagesAsked | None, deformer: str, look: str | None, fps: float
-) -> Iterator[list[WebServer]]:
-    """The server of pages, if one is asked for; the terminal is told where it is and who may ask."""
+    faces: Mapping[str, Face], asked: PagesAsked | None, deformer: str, look: str | None, fps: float, links: Links
+) -> Iterator[None]:
+    """The server of pages, if one is asked for, among ``links``, with where it is and who may ask."""
     if asked is None:
-        yield []
+        yield
         return
     from agentface.io.web.server import WebServer
 
     options: dict[str, Any] = {"token": asked.token, "origins": asked.origins, "told": tell}
     with WebServer(faces, *asked.address, deformer=deformer, look=look, fps=fps, **options) as server:
-        for line in (f"the page is {server.url}", *server.access.told("it")):
-            say(line)
-        yield [server]
+        links.sources.append(server)
+        links.sinks.append(server)
+        links.told += [f"the page is {server.url}", *server.access.told("it")]
+        yield

@@ -12,6 +12,7 @@ import click
 
 from agentface.commands.ending import Ending, until_told
 from agentface.commands.film import Shot
+from agentface.commands.links import Links
 from agentface.commands.options import (
     address,
     camera_option,
@@ -25,6 +26,7 @@ from agentface.commands.options import (
 )
 from agentface.commands.pages import PagesAsked, served_pages, web_options
 from agentface.commands.streams import say, tell
+from agentface.commands.vmc import VmcOptions, check_vmc, vmc_links, vmc_options
 from agentface.resources import DEFAULT_FACE
 
 if TYPE_CHECKING:
@@ -32,7 +34,7 @@ if TYPE_CHECKING:
 
     from agentface.face import Face
     from agentface.io.osc.server import OscServer
-    from agentface.io.web.server import WebServer
+    from agentface.live.loop import Sink, Source
 
 _RECORD = "Film the face; a name like face-%05d.png gives numbered transparent pictures instead."
 
@@ -41,6 +43,7 @@ _RECORD = "Film the face; a name like face-%05d.png gives numbered transparent p
 @click.option(
     "--osc", default="127.0.0.1:7400", callback=address, metavar="HOST:PORT", show_default=True, help="Where to listen."
 )
+@vmc_options
 @web_options
 @click.option("--view", type=click.Choice(["window", "none"]), default="none", show_default=True)
 @click.option("--record", type=click.Path(path_type=Path), metavar="FILE.mp4", help=_RECORD)
@@ -72,6 +75,7 @@ def serve(
     ctx: click.Context,
     *,
     osc: tuple[str, int],
+    vmc: VmcOptions,
     pages: PagesAsked | None,
     view: str,
     record: Path | None,
@@ -94,6 +98,7 @@ def serve(
     \b
     agentface serve --view window
     agentface serve --face amber --id left --face onyx --id right
+    agentface serve --vmc 127.0.0.1:39539 --vmc-in 127.0.0.1:39540
     """  # noqa: D301 - \b is click's mark of lines to keep
     _check_options(
         given(ctx),
@@ -103,33 +108,36 @@ def serve(
         web=pages is not None,
     )
     _check_ids(names, ids)
+    check_vmc(given(ctx), vmc)
     from agentface.io.osc.server import OscServer
 
     made = [
         make_face(name, deformer, look=look, running=True, liveliness=liveliness, seed=seed)
         for seed, name in enumerate(names)
     ]
-    faces = _by_id(made, ids)
+    faces = vmc.first(_by_id(made, ids))
+    name = next(iter(faces))
     rate = fps or (30.0 if record else 60.0)
     with (
         until_told() as ending,
         OscServer(faces if ids or len(made) > 1 else made[0], *osc) as server,
+        vmc_links(name, faces[name], vmc) as links,
         _heard(faces),
-        served_pages(faces, pages, deformer, look, rate) as servers,
+        served_pages(faces, pages, deformer, look, rate, links),
     ):
         if view == "window":
-            _in_a_window(server, faces, ending, look, quality, camera, servers)
+            _in_a_window(server, links, faces, ending, look, quality, camera)
             return
         end = duration or math.inf
         if record is None:
-            _run(server, faces, ending, rate, end, servers)
+            _run(server, links, faces, ending, rate, end)
             return
         shot = Shot(record, size, camera, quality or "fast", rate, look, live=True)
         if every_frame:
             again = make_face(names[0], deformer, look=look, liveliness=liveliness)
-            _film_later(server, faces, ending, shot, end, again, servers)
+            _film_later(server, links, faces, ending, shot, end, again)
         else:
-            _film_now(server, faces, ending, shot, end, servers)
+            _film_now(server, links, faces, ending, shot, end)
 
 
 def _check_options(names: set[str], *, window: bool, record: bool, several: bool, web: bool) -> None:
@@ -193,9 +201,10 @@ def _heard(faces: Mapping[str, Face]) -> Iterator[None]:
         yield
 
 
-def _announce(faces: Mapping[str, Face], server: OscServer) -> None:
+def _announce(faces: Mapping[str, Face], server: OscServer, links: Links) -> None:
     called = [name if name == face.model.name else f"{name} ({face.model.name})" for name, face in faces.items()]
     say(f"{' and '.join(called)} listen{'s' * (len(called) == 1)} to OSC on {server.host}:{server.port}")
+    links.announce()
 
 
 def _only(faces: Mapping[str, Face]) -> Face:
@@ -204,47 +213,66 @@ def _only(faces: Mapping[str, Face]) -> Face:
 
 
 def _in_a_window(
-    server: OscServer, faces: Mapping[str, Face], ending: Ending, look: str | None, quality: str | None, camera: str
+    server: OscServer,
+    links: Links,
+    faces: Mapping[str, Face],
+    ending: Ending,
+    look: str | None,
+    quality: str | None,
+    camera: str,
 ) -> None:
     from agentface.commands.show import make_window
 
     window = make_window(_only(faces), look=look, quality=quality, camera=camera)
-    _announce(faces, server)
-    window.run([server, *pages], stopped=ending.told)
+    _announce(faces, server, links)
+    window.run([server, *links.sources], links.sinks, stopped=ending.told)
 
 
 def _run(
     server: OscServer,
+    links: Links,
     faces: Mapping[str, Face],
     ending: Ending,
     fps: float,
     duration: float,
-    pages: Sequence[WebServer],
 ) -> None:
     from agentface.clock import SystemClock
     from agentface.live.loop import run
 
     face, *beside = faces.values()
-    _announce(faces, server)
-    run(face, SystemClock(), [server, *pages], pages, fps=fps, duration=duration, stopped=ending.told, beside=beside)
+    _announce(faces, server, links)
+    sources = [server, *links.sources]
+    run(face, SystemClock(), sources, links.sinks, fps=fps, duration=duration, stopped=ending.told, beside=beside)
 
 
-def _film_now(server: OscServer, faces: Mapping[str, Face], ending: Ending, shot: Shot, duration: float) -> None:
+def _film_now(
+    server: OscServer, links: Links, faces: Mapping[str, Face], ending: Ending, shot: Shot, duration: float
+) -> None:
     from agentface.clock import SystemClock
+    from agentface.io.video import SOUND_HZ
+    from agentface.live.heard import LiveSound
     from agentface.live.loop import run
     from agentface.live.newest import LiveSink
 
-    face = _only(faces)
-    with LiveSink(lambda: shot.open(face.model, duration if math.isfinite(duration) else None)) as film:
-        _announce(faces, server)
-        frames = run(face, SystemClock(), [server], [film], fps=shot.fps, duration=duration, stopped=ending.told)
+    face, last_s = _only(faces), duration if math.isfinite(duration) else None
+    with LiveSound(face, SOUND_HZ) as sound, LiveSink(lambda: shot.open(face.model, last_s, sound)) as film:
+        _announce(faces, server, links)
+        sources: list[Source] = [server, *links.sources]
+        sinks: list[Sink] = [sound, film, *links.sinks]
+        frames = run(face, SystemClock(), sources, sinks, fps=shot.fps, duration=duration, stopped=ending.told)
     if film.dropped:
         lost = f"{film.dropped} of {frames} frames are left out, as this machine draws too slowly for them"
         tell(f"{shot.path}: {lost}; --every-frame films all of them")
 
 
 def _film_later(
-    server: OscServer, faces: Mapping[str, Face], ending: Ending, shot: Shot, duration: float, again: Face
+    server: OscServer,
+    links: Links,
+    faces: Mapping[str, Face],
+    ending: Ending,
+    shot: Shot,
+    duration: float,
+    again: Face,
 ) -> None:
     """As :func:`_film_now`, but ``again``, a face like the first, goes through it all when it is over.
 
@@ -259,9 +287,10 @@ def _film_later(
     face = _only(faces)
     with shot.open(face.model):
         pass  # what cannot be written or drawn is told before the recording
-    _announce(faces, server)
+    _announce(faces, server, links)
     with Recorder(face) as recorder, HeardRecorder(face, recorder, shot.fps) as heard:
-        run(face, SystemClock(), [server], [recorder], fps=shot.fps, duration=duration, stopped=ending.told)
+        sources, sinks = [server, *links.sources], [recorder, *links.sinks]
+        run(face, SystemClock(), sources, sinks, fps=shot.fps, duration=duration, stopped=ending.told)
     if recorder.last_s is None:
         return
     ending.go_on()  # told to stop again, it keeps what is drawn

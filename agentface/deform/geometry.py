@@ -25,6 +25,7 @@ class FaceArrays(NamedTuple):
     tongue: Floats
     pupils: Floats
     eye_thrust: Floats
+    shoulders: Floats
 
 
 @dataclass(slots=True, eq=False)
@@ -47,6 +48,7 @@ class FaceGeometry:
         tongue: ``(..., T, 3)`` float32 m, the vertices of the tongue before ``jaw`` moves them.
         pupils: ``(..., 2)`` float32, the diameters of the left and the right pupil over those at rest.
         eye_thrust: ``(..., 2)`` float32 m, how far each eyeball, with its centre, stands forward of where it rests.
+        shoulders: ``(..., 4, 4)`` float32, moves what is below the neck, in the room: a breath lifts it.
     """
 
     vertices: Floats
@@ -60,6 +62,7 @@ class FaceGeometry:
     tongue: Floats
     pupils: Floats
     eye_thrust: Floats
+    shoulders: Floats
 
     @classmethod
     def at_rest(cls, model: HeadModel, *, normals: Floats | None = None, batch: tuple[int, ...] = ()) -> FaceGeometry:
@@ -84,6 +87,7 @@ class FaceGeometry:
             tongue=repeated(model.parts["tongue"].attributes["POSITION"]),
             pupils=repeated(np.ones(len(SIDES), np.float32)),
             eye_thrust=repeated(np.zeros(len(SIDES), np.float32)),
+            shoulders=repeated(turn),
         )
 
     @property

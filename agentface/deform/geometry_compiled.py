@@ -21,4 +21,5 @@ def face_at(faces: FaceArrays, index: int) -> FaceArrays:
         faces.tongue[index],
         faces.pupils[index],
         faces.eye_thrust[index],
+        faces.shoulders[index],
     )

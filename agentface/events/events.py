@@ -11,10 +11,11 @@ from typing import Any, Protocol
 
 from agentface.errors import InvalidValueError, UnknownNameError
 from agentface.motion.doing import Doing
+from agentface.motion.mixer import Mixer
 from agentface.motion.performance import LET_GO_S
-from agentface.requests import Gesture, Hush, Play, PlayBlock, Request, Say, Speak
+from agentface.requests import Gesture, Hush, Play, PlayBlock, Request, Say, Speak, TakeBack
 
-EVENTS = ("spoken", "hushed", "failed", "gestured", "played")
+EVENTS = ("spoken", "hushed", "failed", "gestured", "played", "blink", "reached")
 """What a program can be told of."""
 
 
@@ -45,6 +46,7 @@ class Events:
         self._calls: dict[str, list[Callable[[Any], object]]] = {name: [] for name in EVENTS}
         self._asked: deque[tuple[Request, Future[bool]]] = deque()
         self._going: list[_Going] = []
+        self._happened: list[tuple[str, Any]] = []
         self._closed = False
 
     def on(self, event: str, call: Callable[[Any], object]) -> None:
@@ -59,6 +61,12 @@ class Events:
         if call not in calls:
             raise InvalidValueError(f"off {event}", "a function that was given to on", call)
         calls.remove(call)
+
+    def follow(self, channels: Mixer) -> None:
+        """Tell of what the face's channels do by themselves."""
+        blink, emotion = channels.blink, channels.emotion
+        blink.begun.append(lambda shape: self.happened("blink", shape.depth))
+        emotion.reached.append(lambda: self.happened("reached", emotion.target))
 
     def ask(self, request: Request) -> Future[bool]:
         """Have a request applied by the next step; the future has its outcome, or what was raised.
@@ -88,8 +96,15 @@ class Events:
             if not future.cancelled():
                 self._apply(request, future)
 
+    def happened(self, event: str, value: Any) -> None:
+        """Something has happened that nobody asked for by a request of its own; told after the step."""
+        if self._calls[event]:
+            self._happened.append((event, value))
+
     def settle(self) -> None:
         """Tell what is over. What a listener raises is raised; what it was not told of is told after the next step."""
+        while self._happened:
+            self._call(*self._happened.pop(0))
         if not any(going.doing.outcome is not None for going in self._going):
             return
         over = [going for going in self._going if going.doing.outcome is not None]
@@ -135,6 +150,8 @@ class Events:
         if going.doing.outcome is not None:
             return
         if not going.doing.begun:
+            if isinstance(going.request, Speak):
+                self._face.apply(TakeBack(going.request))
             going.doing.end(whole=False)
         elif isinstance(going.request, Say | Speak):
             self._face.apply(Hush())
@@ -149,8 +166,11 @@ class Events:
             _resolve(going.future, outcome=bool(doing.outcome), error=doing.error)
             return
         for event, value in _told(going.request, doing):
-            for call in tuple(self._calls[event]):
-                call(value)
+            self._call(event, value)
+
+    def _call(self, event: str, value: Any) -> None:
+        for call in tuple(self._calls[event]):
+            call(value)
 
 
 def _told(request: Request, doing: Doing) -> list[tuple[str, Any]]:

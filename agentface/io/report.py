@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from itertools import islice
 from pathlib import Path
@@ -21,6 +22,16 @@ class Report:
     path: Path
     faults: list[Fault] = field(default_factory=list)
     notes: list[Fault] = field(default_factory=list)
+    _demands: bool = False
+
+    @contextmanager
+    def demanding(self) -> Iterator[None]:
+        """In this block, what is not shown as it is written is a fault."""
+        self._demands = True
+        try:
+            yield
+        finally:
+            self._demands = False
 
     def tell(self, line: int | None, where: str, expected: str, got: str, hint: str = "") -> None:
         """Remember what is not allowed."""
@@ -29,6 +40,9 @@ class Report:
 
     def note(self, line: int | None, where: str, expected: str, got: str, hint: str = "") -> None:
         """Remember what is allowed, and not shown as it is written."""
+        if self._demands:
+            self.tell(line, where, expected, got, hint)
+            return
         if len(self.notes) < _MOST:
             self.notes.append(self._fault(line, where, expected, got, hint))
 

@@ -4,12 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from fractions import Fraction
-from typing import TYPE_CHECKING, Any
-
-import numpy as np
+from typing import TYPE_CHECKING, Any, Protocol
 
 from agentface.errors import InvalidValueError
-from agentface.speech.sound import Sound
+from agentface.speech.sound import Samples
 
 if TYPE_CHECKING:
     from av.container import OutputContainer
@@ -20,7 +18,18 @@ _BLOCK = 1024
 """The samples of a packet of AAC."""
 
 
-def check_track(sound: Sound) -> None:
+class Heard(Protocol):
+    """What a film takes its sound of: a ``Sound``, or one that grows while it is filmed."""
+
+    @property
+    def rate_hz(self) -> int:
+        """Samples a second."""
+
+    def part(self, first: int, count: int) -> Samples:
+        """``count`` samples from that at ``first`` on, each asked for once and in its time."""
+
+
+def check_track(sound: Heard) -> None:
     """Raise InvalidValueError for a sound whose rate AAC does not have."""
     if sound.rate_hz not in _RATES_HZ:
         raise InvalidValueError("rate of a film's sound", f"one of {', '.join(map(str, _RATES_HZ))}", sound.rate_hz)
@@ -32,7 +41,7 @@ class SoundTrack:
     After its end it is silent: a muxer holds pictures back while it waits for the sound beside them.
     """
 
-    def __init__(self, container: OutputContainer, sound: Sound) -> None:
+    def __init__(self, container: OutputContainer, sound: Heard) -> None:
         from av.audio.stream import AudioStream
 
         stream = container.add_stream("aac", rate=sound.rate_hz)
@@ -59,9 +68,7 @@ class SoundTrack:
     def _encoded(self, count: int) -> Iterator[Any]:
         from av.audio.frame import AudioFrame
 
-        samples = np.zeros(count, np.int16)
-        heard = self._sound.samples[self._place : self._place + count]
-        samples[: len(heard)] = heard
+        samples = self._sound.part(self._place, count)
         frame = AudioFrame.from_ndarray(samples[None], format="s16", layout="mono")
         frame.sample_rate = self._sound.rate_hz
         frame.pts, frame.time_base = self._place, Fraction(1, self._sound.rate_hz)

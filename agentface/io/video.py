@@ -14,8 +14,7 @@ from typing import TYPE_CHECKING, Any, BinaryIO, Self
 from agentface.conventions import Bytes, check_finite, check_rate
 from agentface.errors import InvalidValueError, OutputError
 from agentface.io.files import cannot_write, check_writable
-from agentface.io.sound_track import SoundTrack, check_track
-from agentface.speech.sound import Sound
+from agentface.io.sound_track import Heard, SoundTrack, check_track
 
 if TYPE_CHECKING:
     from av.container import OutputContainer
@@ -53,7 +52,7 @@ class VideoWriter:
         fps: float = 30.0,
         *,
         keep: bool = False,
-        sound: Sound | None = None,
+        sound: Heard | None = None,
     ) -> None:
         path = Path(path)
         check_video_name(path)
@@ -83,7 +82,9 @@ class VideoWriter:
         self._last = tick
         self._mux(frame)
         if self._track is not None:
-            self._mux_sound(self._track.until(self._end_s))
+            self._mux_sound(
+                self._track.until(self._last / _TICKS)
+            )  # of one that grows, what comes later is not there yet
 
     def close(self) -> None:
         """Write what is left; may be called twice. Raises OutputError when that fails, and removes the file or not."""
@@ -227,7 +228,7 @@ def whole_fragments(file: BinaryIO) -> int:
 
 
 def _open(
-    path: Path, file: _File, size: tuple[int, int], fps: float, sound: Sound | None
+    path: Path, file: _File, size: tuple[int, int], fps: float, sound: Heard | None
 ) -> tuple[OutputContainer, VideoStream, SoundTrack | None]:
     import av
     from av.error import FFmpegError

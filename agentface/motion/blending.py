@@ -1,6 +1,6 @@
 """What several channels want of the same parameters, blended into one pose.
 
-A wish is what one channel wants of one parameter. It goes over what those before it made: ``(1 - w) v + w f(v)`` for a
+A claim is what one channel wants of one parameter. It goes over what those before it made: ``(1 - w) v + w f(v)`` for a
 weight w, where f replaces v, adds to it, scales it or is the larger of both.
 """
 
@@ -19,7 +19,7 @@ from agentface.parameters import WAYS, Way, parameter
 MAX, ADD, SCALE = (WAYS.index(way) for way in ("max", "add", "scale"))
 
 
-class Wish(NamedTuple):
+class Claim(NamedTuple):
     """One, to be sorted by what comes first."""
 
     priority: int
@@ -31,8 +31,8 @@ class Wish(NamedTuple):
     name: str
 
 
-class Wishes(NamedTuple):
-    """Wishes in the order in which they are blended, ``(R,)`` each; ``way`` is the place in ``WAYS``."""
+class Claims(NamedTuple):
+    """Claims in the order in which they are blended, ``(R,)`` each; ``way`` is the place in ``WAYS``."""
 
     channel: Indices
     way: Indices
@@ -42,31 +42,31 @@ class Wishes(NamedTuple):
     """``(G + 1,)``: from each of them to the next, all are of one channel and one way."""
 
     @classmethod
-    def of(cls, wishes: Iterable[Wish]) -> Wishes:
+    def of(cls, claims: Iterable[Claim]) -> Claims:
         """Those of the lowest priority first, of equal priority those of the first channel."""
-        ordered = sorted(wishes)
-        kinds = [(wish.priority, wish.channel, wish.way) for wish in ordered]
+        ordered = sorted(claims)
+        kinds = [(claim.priority, claim.channel, claim.way) for claim in ordered]
         bounds = [0, *(number for number in range(1, len(kinds)) if kinds[number] != kinds[number - 1]), len(kinds)]
         columns = (
-            [wish.channel for wish in ordered],
-            [WAYS.index(wish.way) for wish in ordered],
-            [wish.column for wish in ordered],
-            [parameter(wish.name).index for wish in ordered],
+            [claim.channel for claim in ordered],
+            [WAYS.index(claim.way) for claim in ordered],
+            [claim.column for claim in ordered],
+            [parameter(claim.name).index for claim in ordered],
             bounds,
         )
         return cls(*(np.array(column, np.int32) for column in columns))
 
 
-def blend_in_numpy(wishes: Wishes, wants: npt.NDArray[np.bool_], wanted: Doubles, values: Doubles) -> None:
+def blend_in_numpy(claims: Claims, wants: npt.NDArray[np.bool_], wanted: Doubles, values: Doubles) -> None:
     """Blend into ``values (COUNT,)`` what those channels want for which ``wants (C,)`` is true.
 
     ``wanted (2, N)`` are the values and the weights of all channels.
     """
-    for first, end in pairwise(wishes.bounds.tolist()):
-        if end == first or not wants[wishes.channel[first]]:
+    for first, end in pairwise(claims.bounds.tolist()):
+        if end == first or not wants[claims.channel[first]]:
             continue
-        places, way = wishes.place[first:end], wishes.way[first]
-        below, (asked, weights) = values[places], wanted[:, wishes.column[first:end]]
+        places, way = claims.place[first:end], claims.way[first]
+        below, (asked, weights) = values[places], wanted[:, claims.column[first:end]]
         if way == MAX:
             asked = np.maximum(below, asked)
         elif way == ADD:

@@ -7,6 +7,7 @@ orbicularis oculi closes the lids, their levator rests.
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from typing import NamedTuple
 
 from agentface.conventions import SIDES, Doubles
@@ -32,12 +33,14 @@ class BlinkChannel:
 
     Attributes:
         lags_s: how much later than told the left and the right eye do it.
+        begun: called with each blink when the first lid begins to close.
     """
 
     names = (*_CLOSER, *_LEVATOR)
 
     def __init__(self, *, compiled: bool = False) -> None:
         self.lags_s: tuple[float, ...] = (0.0,) * len(SIDES)
+        self.begun: list[Callable[[BlinkShape], object]] = []
         self._closure = Envelope(len(SIDES), compiled=compiled)
         self._now = 0.0
         self._asked: list[tuple[float, int, BlinkShape]] = []
@@ -94,6 +97,9 @@ class BlinkChannel:
         self._closure.move(shape.depth, shape.close_s, [side])
         self._open_at[side] = self._now + shape.close_s + shape.hold_s
         self._open_s[side] = shape.open_s
+        if side == self.lags_s.index(min(self.lags_s)):
+            for tell in self.begun:
+                tell(shape)
 
     def _open(self, side: int) -> None:
         self._closure.move(0.0, self._open_s[side], [side])

@@ -34,6 +34,7 @@ class EmotionChannel:
 
     Attributes:
         mood: what the intensities return to.
+        reached: called whenever the contractions are where they go.
         apart: how much the two sides of a pair are out of step, 0, not at all, .. 1, as the lags say.
     """
 
@@ -54,6 +55,7 @@ class EmotionChannel:
         self._course = Course(rules, self._intensities, modes, pairs or default_conflicts().pairs, loops.held_back)
         self.mood = EmotionState()
         self.apart = 0.0
+        self.reached: list[Callable[[], object]] = []
         self._now = 0.0
         self._shown = np.zeros(len(EMOTIONS), np.bool_)
         self._returns, self._next = np.full(len(EMOTIONS), math.inf), math.inf
@@ -109,8 +111,11 @@ class EmotionChannel:
             self._now = max(self._next, self._now)
             self._course.advance(self._now)
             self._return(self._returns <= self._now, self._fades)
-        self._now = until
+        self._now, moved = until, not self._course.settled
         self._course.advance(until)
+        if moved and self._course.settled:
+            for tell in self.reached:
+                tell()
 
     def write(self, values: Doubles, weights: Doubles) -> bool:
         """The contractions now."""

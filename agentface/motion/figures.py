@@ -123,6 +123,7 @@ class BreathFigures(Table):
     in_share: Annotated[float, Field(ge=0.1, le=0.9)]
     head_deg: Annotated[float, Field(ge=0, le=10)]
     nostrils: Share
+    chest: Share
 
 
 class PupilFigures(Table):

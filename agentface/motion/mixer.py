@@ -12,7 +12,7 @@ from agentface.conventions import Doubles, Floats
 from agentface.errors import InvalidValueError, UnknownNameError
 from agentface.kernel import can_compile
 from agentface.motion.action_units import ActionUnitChannel
-from agentface.motion.blending import Wish, Wishes, blend_in_numpy
+from agentface.motion.blending import Claim, Claims, blend_in_numpy
 from agentface.motion.blink import BlinkChannel
 from agentface.motion.channel import Channel, Rank
 from agentface.motion.conflicts import Conflicts, default_conflicts
@@ -229,20 +229,20 @@ class Mixer(MutableMapping[str, Channel]):
         self._arrange()
 
     def _arrange(self) -> None:
-        """Put what all channels want into one place, and the wishes in order; the head's by themselves: where the eyes
+        """Put what all channels want into one place, and the claims in order; the head's by themselves: where the eyes
         have to turn depends on them.
         """
         self._asked = tuple(self._layers.values())
         ends = np.cumsum([len(layer.names) for layer in self._asked]).tolist()
         self._wants, self._wanted = np.zeros(len(self._asked), np.bool_), np.zeros((2, ends[-1]))
-        wishes: tuple[list[Wish], list[Wish]] = ([], [])
+        claims: tuple[list[Claim], list[Claim]] = ([], [])
         for number, (layer, end) in enumerate(zip(self._asked, ends, strict=True)):
             first = end - len(layer.names)
             layer.move_to(self._wanted[:, first:end])
             for column, name in enumerate(layer.names, first):
                 turns = parameter(name).index in _HEADS
-                wishes[turns].append(Wish(layer.rank.priority_of(name), number, layer.rank.way_of(name), column, name))
-        self._others, self._turning = (Wishes.of(found) for found in wishes)
+                claims[turns].append(Claim(layer.rank.priority_of(name), number, layer.rank.way_of(name), column, name))
+        self._others, self._turning = (Claims.of(found) for found in claims)
         self._gaze_layer = list(self._layers).index("gaze") if "gaze" in self._layers else 0
         self._shown = b""
 

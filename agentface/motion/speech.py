@@ -131,6 +131,12 @@ class SpeechChannel:
             self._hushed = min(self._hushed, self._now)
         self._drop()
 
+    def take_back(self, phones: Sequence[Phone]) -> None:
+        """Do not say what waits with these phones, the last of those that do; nothing where none does."""
+        waiting = [each for each in self._waiting if each.told == tuple(phones) and each.doing.outcome is None]
+        if waiting:
+            waiting[-1].doing.end(whole=False)
+
     def show(self, name: str, weight: float, duration: float | None = None) -> None:
         """Show a viseme at a weight 0..1 beside other such, until told otherwise or for ``duration`` s."""
         visemes = self.articulation.visemes

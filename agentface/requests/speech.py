@@ -101,6 +101,26 @@ class Hush(Request):
 
 
 @dataclass(frozen=True, slots=True)
+class TakeBack(Request):
+    """Do not say phones that still wait for their turn.
+
+    Attributes:
+        speak: what had them said.
+    """
+
+    speak: Speak
+
+    @property
+    def key(self) -> tuple[Hashable, ...]:
+        """Each by itself."""
+        return type(self).__name__, self.speak
+
+    def apply(self, face: Movable) -> None:
+        """Tell the channel of speech."""
+        face.channels.speech.take_back(self.speak.phones)
+
+
+@dataclass(frozen=True, slots=True)
 class ShowViseme(Request):
     """Show one viseme beside others.
 

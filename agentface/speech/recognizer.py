@@ -15,6 +15,9 @@ QUIET = 30.0
 _LOOP = {"lw": 1.0, "beam": 1e-30, "pbeam": 1e-30}
 """What it expects of the order of phones counts little beside what it hears, and it drops no path early: with its own
 values, which are for words, it hears half as many lips that close."""
+_MEAN = "51.5,3.65,12.4,18.3,7.15,3.70,7.98,-13.3,-10.2,-10.6,12.2,1.59,4.10"
+"""The mean cepstrum that it begins with where sound is heard while it comes, until it has heard enough of its own: that
+of flite's voices kal, slt and rms. Without it, it hears a tenth less of the lips that close in a first sentence."""
 _NO_POCKETSPHINX = """expected the Python package pocketsphinx, got none; it hears what is said in a recording.
 Install the extra that has it:  pip install "agentface[speech]\""""
 
@@ -30,7 +33,7 @@ def open_recognizer(*, phone_loop: bool) -> Any:
     try:
         if phone_loop:
             model = get_model_path("en-us/en-us-phone.lm.bin")
-            return Decoder(allphone=model, lm=None, loglevel="FATAL", **_LOOP)
+            return Decoder(allphone=model, lm=None, cmninit=_MEAN, loglevel="FATAL", **_LOOP)
         return Decoder(lm=None, loglevel="FATAL")
     except (RuntimeError, ValueError) as error:
         raise SpeechError(f"expected pocketsphinx to load its model, got: {error}") from error

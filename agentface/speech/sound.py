@@ -63,6 +63,14 @@ class Sound:
         """Seconds."""
         return len(self.samples) / self.rate_hz
 
+    def part(self, first: int, count: int) -> Samples:
+        """``count`` samples from that at ``first`` on; silence where there are none."""
+        samples = np.zeros(count, np.int16)
+        begin, end = max(first, 0), min(first + count, len(self.samples))
+        if begin < end:
+            samples[begin - first : end - first] = self.samples[begin:end]
+        return samples
+
     def at_rate(self, rate_hz: int) -> Sound:
         """The same with so many samples a second."""
         if rate_hz == self.rate_hz or not len(self.samples):

@@ -67,9 +67,9 @@ def grown_hair(model: HeadModel, look: Look) -> GrownHair | None:
 
 def dressed_skin(model: HeadModel, look: Look, grown: GrownHair | None) -> dict[str, Floats]:
     """What the look makes of the skin's vertices: ``(V, 1..4)`` by the names of ``shaders/skin_place.glsl``."""
-    ambient = folds(model) * (1 - shade(model, look.hair, grown)[:, None])
+    ambient = folds(model) * (1 - _shade(model, look.hair, grown)[:, None])
     dressed = {
-        "complexion": complexion(model, covered(model, look.hair), look.skin.stubble),
+        "complexion": complexion(model, _covered(model, look.hair), look.skin.stubble),
         "ambient": ambient.astype(np.float32),
     }
     if skin_image(look, 1) is not None:
@@ -77,7 +77,7 @@ def dressed_skin(model: HeadModel, look: Look, grown: GrownHair | None) -> dict[
     return dressed
 
 
-def covered(model: HeadModel, look: HairLook) -> Floats:
+def _covered(model: HeadModel, look: HairLook) -> Floats:
     """``(V,)`` 0..1: how much of the skin's colour is that of the hair on it, brows among it."""
     tint = _BROW_TINT * look.brow_density * BrowLine(model).density(model.vertices)
     if look.style != "none":
@@ -85,7 +85,7 @@ def covered(model: HeadModel, look: HairLook) -> Floats:
     return np.asarray(np.clip(tint, 0, 1), np.float32)
 
 
-def shade(model: HeadModel, look: HairLook, grown: GrownHair | None) -> Doubles:
+def _shade(model: HeadModel, look: HairLook, grown: GrownHair | None) -> Doubles:
     """``(V,)`` 0..1: the part of the surroundings' light that hair keeps off the skin."""
     kept_off = hair_shade(model, look)
     return kept_off if grown is None else np.maximum(kept_off, grown.shade(model.vertices))

@@ -237,7 +237,7 @@ class Renderer:
     def _draw_bone(self, geometry: FaceGeometry, targets: Targets, bone: Bone) -> None:
         self._bones.draw(geometry, bone)
         self.context.enable(self.context.CULL_FACE)
-        self._shirt.draw(np.eye(4, dtype=np.float32))
+        self._shirt.draw(geometry.shoulders)
         for eye in self._eyes:
             eye.draw(geometry)
         self._bones.draw_film(self.context, targets.scene)
@@ -269,7 +269,7 @@ class Renderer:
     def _draw_solids(self, geometry: FaceGeometry) -> None:
         self.context.enable(self.context.CULL_FACE)
         self._mouth.draw(geometry)
-        self._shirt.draw(np.eye(4, dtype=np.float32))
+        self._shirt.draw(geometry.shoulders)
         self._programs["lining"]["shaded"].value = 0.0
         for lining in self._linings:
             lining.draw()

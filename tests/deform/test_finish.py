@@ -20,6 +20,7 @@ POSE = FacePose.of(
     tongue_out=0.5,
     pupil_dilation=0.5,
     eye_thrust=0.5,
+    breath=0.5,
 )
 
 

@@ -13,9 +13,11 @@ from hypothesis import strategies as st
 
 from agentface.errors import InvalidValueError, SpeechError, UnknownNameError
 from agentface.events.events import EVENTS
+from agentface.live.notes import Replay
+from agentface.motion.blink import BlinkShape
 from agentface.motion.performance import Performance
 from agentface.parameters import COUNT
-from agentface.requests import Gesture, Hush, Neutral, Play, Say, SetEmotion, Speak
+from agentface.requests import Gesture, Hush, Neutral, Play, Say, SetEmotion, Speak, TakeBack
 from tests.voices import talking_face
 
 
@@ -25,10 +27,15 @@ def face():
         yield made
 
 
+OVER = ("spoken", "hushed", "failed", "gestured", "played")
+"""The events of what was asked for."""
+
+
 @pytest.fixture
 def told(face):
+    assert set(OVER) < set(EVENTS)
     said = []
-    for name in EVENTS:
+    for name in OVER:
         face.on(name, lambda value, name=name: said.append((name, value)))
     return said
 
@@ -220,6 +227,53 @@ def test_cancelled_before_its_turn_it_never_begins(face, told):
     assert face.channels.speech.status is None
     run(face, 1.0)
     assert len(told) == 3
+
+
+def test_phones_that_are_taken_back_while_they_wait_are_not_replayed(face):
+    noted, phones = [], [("PP", 0.0, 0.3)]
+    face.noted.append(lambda request: noted.append((0.0, request)))
+    face.speak([("aa", 0.0, 0.3)])
+    kept, taken = face.ask(Speak.of(phones)), face.ask(Speak.of(phones))
+    face.step(0.01)
+    taken.cancel()
+    face.step(0.01)
+    with talking_face() as again:
+        Replay(again, noted, 60.0).take_in(0.0)
+        for each in (face, again):
+            assert each.channels.speech.status["waiting"] == 2, "one of them is passed over when its turn comes"
+            run(each, 0.75)
+            assert each.channels.speech.status is None
+    assert kept.result(0) is True
+    assert noted[-1][1] == TakeBack(Speak.of(phones))
+
+
+def test_every_blink_is_told_once_with_how_far_it_closes():
+    for liveliness in (0.0, 1.0):  # lively, one eye is late
+        with talking_face(liveliness=liveliness) as face:
+            blinks = []
+            face.channels.life.set_state("thinking")
+            face.on("blink", blinks.append)
+            face.channels.blink.blink()
+            face.channels.blink.blink(BlinkShape(0.5), in_s=0.5)
+            run(face, 0.4)
+            assert blinks == [1.0]
+            run(face, 0.3)
+            assert blinks == [1.0, 0.5]
+
+
+def test_it_is_told_when_the_emotions_are_where_they_go(face):
+    reached = []
+    face.on("reached", reached.append)
+    face.set_emotion("happiness", 0.8, fade=0.5)
+    run(face, 0.4)
+    assert reached == []
+    run(face, 0.2)
+    assert [dict(state.as_dict())["happiness"] for state in reached] == [0.8]
+    run(face, 1.0)
+    face.set_emotion("fear", 0.5, fade=0.2)
+    face.set_emotion("fear", 0.7, fade=0.2)
+    run(face, 1.0)
+    assert [state["fear"] for state in reached] == [0.0, 0.7]
 
 
 @pytest.mark.parametrize("request_", [Say("One. Two."), Speak.of([("aa", 0.0, 2.0)])], ids=["say", "speak"])

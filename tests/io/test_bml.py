@@ -118,6 +118,21 @@ def test_the_block_says_how_it_comes_and_for_whom():
     assert [behavior.id for behavior in block.behaviors] == ["a"]
 
 
+@pytest.mark.parametrize(
+    ("inside", "expected"),
+    [
+        ('<gesture id="g" lexeme="BEAT"/>', "g: expected what a face does, got <gesture>"),
+        ('<faceLexeme id="f" lexeme="SMIRKING"/>', "f.lexeme: expected a lexeme of bml.yaml, or an emotion"),
+        ('<walk xmlns="urn:other" id="w"/>', "w: expected a behavior of BML 1.0, got <walk>"),
+    ],
+)
+def test_a_block_that_requires_what_is_not_shown_is_refused(inside, expected):
+    with pytest.raises(DataError, match=expected):
+        read(f'<wait id="a"/><required><wait id="b"/>{inside}</required>')
+    block = read(f'<required><wait id="a"/></required>{inside}')
+    assert len(block.notes) == 1
+
+
 def test_what_is_not_a_face_s_is_left_out_and_others_may_wait_for_it():
     inside = (
         '<gesture id="g" lexeme="BEAT"/>\n<pointing id="p" target="x"/>\n<posture id="q"/>\n<postureShift id="r"/>\n'
@@ -201,6 +216,17 @@ def test_the_example_is_known_by_its_content_and_plays(tmp_path):
 def test_a_beginning_of_many_comments_is_known_soon():
     assert not is_bml(b"<!-- --><?x ?> " * 4000)
     assert is_bml(b"<!-- --><?x ?> " * 4000 + b"<bml>")
+
+
+@pytest.mark.parametrize("encoding", ["utf-16", "utf-16-le", "utf-16-be"])
+def test_it_may_be_written_in_utf_16(tmp_path, encoding):
+    mark = "" if encoding == "utf-16" else "\ufeff"
+    for text, known in (('<bml id="x"><wait id="ä"/></bml>', "bml"), ("<emotionml/>", "emotionml")):
+        path = tmp_path / f"{known}.txt"
+        path.write_bytes(f'{mark}<?xml version="1.0" encoding="UTF-16"?>\n{text}'.encode(encoding))
+        assert is_bml(path.read_bytes()) == (known == "bml")
+        assert kind_of(path).name == known
+    assert load_bml(tmp_path / "bml.txt").behaviors[0].id == "ä"
 
 
 def block_or_faults(data):

@@ -126,3 +126,36 @@ def test_a_real_client_hears_of_its_block():
             heard.append(OscMessage(client.recv(4096)).params)
     assert [what for _, what, _ in heard[1:]] == ["start", "w:start", "w:end", "end"]
     assert heard[-1][2] == pytest.approx(1.4)
+
+
+def test_of_several_faces_the_character_of_a_block_plays_it():
+    desk = Desk("left", "right")
+    for name, character in (("a", "left"), ("b", "right"), ("c", ""), ("d", "Ann")):
+        desk.send(f'<bml id="{name}" characterId="{character}"><wait id="w"/></bml>')
+        desk.run(0.1)
+    starts = [(address, block) for address, block, what, _ in desk.told() if what == "start"]
+    assert starts == [
+        ("/agentface/left/bml/feedback", "a"),
+        ("/agentface/right/bml/feedback", "b"),
+        ("/agentface/left/bml/feedback", "c"),
+        ("/agentface/right/bml/feedback", "c"),
+        ("/agentface/left/bml/feedback", "d"),
+        ("/agentface/right/bml/feedback", "d"),
+    ]
+
+
+def test_a_block_for_another_face_than_its_address_is_refused():
+    desk = Desk("left", "right")
+    desk.send('<bml id="a" characterId="right"><wait id="w"/></bml>', address="/agentface/left/bml")
+    desk.run(0.1)
+    ((address, *answer),) = desk.told()
+    assert (address, answer[0]) == ("/agentface/error", "/agentface/left/bml")
+    assert "characterId" in answer[1]
+    assert [face.message_counts.errors["rejected"] for face in desk.made] == [1, 0]
+
+
+def test_one_face_plays_the_blocks_of_any_character():
+    desk = Desk()
+    desk.send('<bml id="a" characterId="Ann"><wait id="w"/></bml>')
+    desk.run(0.1)
+    assert (FEEDBACK, "a", "start", 0.0) in desk.told()

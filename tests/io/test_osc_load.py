@@ -100,7 +100,7 @@ class Flood:
                 self.sent += 1
         self.said.append(share)
         # for one that is lost it waits in vain, as long as a test may take
-        while len(self._server._waiting) < KINDS * self._times:
+        while len(self._server._listener.waiting) < KINDS * self._times:
             time.sleep(0.0002)
 
     def show(self, frame):

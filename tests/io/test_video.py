@@ -146,7 +146,7 @@ def test_drawing_later_tells_the_time_left(tmp_path):
 @pytest.mark.gl
 @pytest.mark.parametrize("name", ["film.mp4", "face-%05d.png"])
 def test_an_interrupt_while_drawing_keeps_what_is_drawn(tmp_path, name):
-    with serve_later(tmp_path / name, 1.5, "640x480") as server:
+    with serve_later(tmp_path / name, 1.5, "1280x720") as server:
         said = ""
         while not re.search(r"\s[1-9]\d?%", said[-5:]):
             said += server.stderr.read(1)

@@ -7,6 +7,7 @@ import pytest
 
 from agentface import Face
 from agentface.clock import FrameClock
+from agentface.deform.geometry import FaceArrays
 from agentface.io.osc.receiver import Receiver
 from agentface.live.loop import run
 from agentface.live.notes import Recorder, Replay
@@ -66,7 +67,7 @@ def replay(face, recorder):
 
 def assert_the_same(frame, other):
     assert frame.pose == other.pose
-    for name in ("vertices", "normals", "wrinkles", "eye_rotations", "jaw", "head", "tongue", "pupils", "eye_thrust"):
+    for name in FaceArrays._fields:
         np.testing.assert_array_equal(getattr(frame.geometry, name), getattr(other.geometry, name), err_msg=name)
 
 

@@ -46,8 +46,9 @@ def read(folder: Path, content: bytes) -> dict[str, MeshArrays] | None:
     try:
         return read_glb(path)
     except DataError as error:
-        assert [fault.file for fault in error.faults] == [path]
-        return None
+        faulty = {fault.file for fault in error.faults}
+    assert faulty == {path}
+    return None
 
 
 def places(text: object, here: tuple = ()) -> list[tuple]:

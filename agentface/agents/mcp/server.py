@@ -34,7 +34,7 @@ def face_server(actor: Actor) -> MCPServer[Any]:
     except ImportError as error:
         raise MissingPackageError("mcp", "mcp", "it speaks to language models") from error
 
-    instructions = _INSTRUCTIONS.format(name=actor.face.model.name)
+    instructions = _INSTRUCTIONS.format(name=actor.model.name)
     server: MCPServer[Any] = MCPServer(
         "agentface", title="A face", instructions=instructions, version=version("agentface"), log_level="WARNING"
     )
@@ -55,7 +55,7 @@ def face_server(actor: Actor) -> MCPServer[Any]:
     ]
     for function in asked:
         _add(server, _telling(function, ToolError))
-    eye = ", ".join(f"{at:.2f}" for at in Eyesight.of(actor.face.model).eye)
+    eye = ", ".join(f"{at:.2f}" for at in Eyesight.of(actor.model).eye)
     described = _properties(server, "look_at")
     described["x_m"]["description"] += f"; the eyes are at {eye}"
     _properties(server, "gesture")["name"]["enum"] = sorted(all_gestures())

@@ -82,7 +82,7 @@ class FaceTools:
         wait: Annotated[bool, Field(description="answer when all is said, not when it has begun")] = False,
     ) -> FaceReport:
         """Say a text with voice and lips, after what is being said already."""
-        waits = bool(await self._actor.call(lambda: self._actor.face.talker.texts)) and not interrupt
+        waits = bool(await self._actor.call(lambda face: face.talker.texts)) and not interrupt
         doing = await self._actor.apply(Say(text, None, language, 1.0, interrupt))
         if doing is not None and wait:
             await self._actor.over(doing)
@@ -130,7 +130,7 @@ class FaceTools:
 
     async def status(self) -> FaceReport:
         """What the face is doing now."""
-        return await self._actor.call(lambda: FaceReport.of(self._actor.face))
+        return await self._actor.call(FaceReport.of)
 
     async def picture(self, camera: str = "front", size: tuple[int, int] = (512, 512)) -> Bytes:
         """The face as it is shown, ``(height, width, 3)`` uint8; raises GraphicsError."""

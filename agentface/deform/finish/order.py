@@ -1,4 +1,4 @@
-"""What every deformer's skin gets last, in its order: normals, wrinkles, eyes, teeth, tongue, the head, the neck."""
+"""What every deformer's skin gets last, in order: normals, wrinkles, eyes, teeth, tongue, head, neck with the chest."""
 
 from __future__ import annotations
 
@@ -10,7 +10,8 @@ import numpy as np
 from agentface.conventions import Floats, Indices
 from agentface.deform.eyes import eyeballs
 from agentface.deform.eyes.eyeballs import EyesTables
-from agentface.deform.finish import head_turn, neck, teeth, wrinkle_normals, wrinkles
+from agentface.deform.finish import chest, head_turn, neck, teeth, wrinkle_normals, wrinkles
+from agentface.deform.finish.chest import ChestTables
 from agentface.deform.finish.head_turn import HeadTurnTables
 from agentface.deform.finish.neck import NeckTables
 from agentface.deform.finish.teeth import TeethTables
@@ -48,6 +49,7 @@ class FinishTables(NamedTuple):
     tongue: TongueTables
     head: HeadTurnTables
     neck: NeckTables
+    chest: ChestTables
 
 
 def prepare(model: HeadModel) -> FinishTables:
@@ -62,6 +64,7 @@ def prepare(model: HeadModel) -> FinishTables:
         tongue=tongue_tables.prepare(model),
         head=head_turn.prepare(model),
         neck=neck.prepare(model),
+        chest=chest.prepare(model),
     )
 
 
@@ -90,3 +93,4 @@ def finish(first: int, last: int, tables: FinishTables, values: Floats, face: Fa
             head_turn.apply(tables.head, values, face.head)
         elif stage == FinishStage.NECK:
             neck.apply(tables.neck, face.head, face.vertices, face.normals, face.smooth_normals)
+            chest.apply(tables.chest, values, face.shoulders)

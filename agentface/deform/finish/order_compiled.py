@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from agentface.deform.eyes import eyeballs_compiled as eyeballs  # noqa: F401  # the twin's names
+from agentface.deform.finish import chest_compiled as chest  # noqa: F401
 from agentface.deform.finish import head_turn_compiled as head_turn  # noqa: F401
 from agentface.deform.finish import neck_compiled as neck  # noqa: F401
 from agentface.deform.finish import order

@@ -7,6 +7,7 @@ with its line; what is not a face's is left out and noted.
 from __future__ import annotations
 
 import re
+from codecs import BOM_UTF8, BOM_UTF16_BE, BOM_UTF16_LE
 from dataclasses import replace
 from pathlib import Path
 
@@ -29,7 +30,10 @@ _ROOT = re.compile(rb"(?>(?>\s+|<\?.*?\?>|<!--.*?-->)*)<(?:[\w.-]+:)?bml[\s>/]",
 
 def is_bml(begin: bytes) -> bool:
     """Whether a document that begins so has the root of BML."""
-    return _ROOT.match(begin.removeprefix(b"\xef\xbb\xbf")[:65536]) is not None
+    begin = begin[:65536]
+    if begin.startswith((BOM_UTF16_LE, BOM_UTF16_BE)):
+        begin = begin.decode("utf-16", "ignore").encode("utf-8", "ignore")
+    return _ROOT.match(begin.removeprefix(BOM_UTF8)) is not None
 
 
 def read_bml(data: bytes | str, where: Path | str = "block.bml") -> Block:
@@ -37,7 +41,8 @@ def read_bml(data: bytes | str, where: Path | str = "block.bml") -> Block:
 
     Raises DataError with every fault: XML that is not well-formed or has a document type, what BML does not allow,
     sync points that nobody has or that wait for themselves, more than ``LARGEST_FILE`` bytes, ``MOST_BEHAVIORS``
-    behaviors or ``MOST_CONSTRAINTS`` constraints. What a face does not show is in the block's ``notes``.
+    behaviors or ``MOST_CONSTRAINTS`` constraints. What a face does not show is in the block's ``notes``, and a fault
+    where it is ``<required>``.
     """
     report = Report(Path(where))
     data = data.encode("utf-8", "replace") if isinstance(data, str) else data
@@ -106,7 +111,8 @@ class _BlockReader:
             if ours and child.name == "constraint":
                 self._constraints.append(child)
             elif ours and child.name == "required" and not required:
-                self._take(child, required=True)
+                with self._report.demanding():
+                    self._take(child, required=True)
             else:
                 self._behavior(child)
 

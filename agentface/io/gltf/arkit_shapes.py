@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 
 import numpy as np
 
@@ -13,7 +13,7 @@ from agentface.deform.protocol import Deformer
 from agentface.head.arkit import ARKIT_SHAPES
 from agentface.head.model import HeadModel
 from agentface.io.gltf.face_parts import released
-from agentface.io.gltf.surface import Surface, apart_mm, joined
+from agentface.io.gltf.surface import Surface, apart_mm, less
 from agentface.io.gltf.writer import Target
 from agentface.mpeg4.looking import Looking
 
@@ -55,9 +55,8 @@ def _between(surface: Surface, first: FaceGeometry, second: FaceGeometry) -> dic
     found = {}
     for name in before | after:
         some = after.get(name) or before[name]
-        assert some.normals is not None, "made with normals"  # noqa: S101 - for the type checker
-        zero = Target(np.zeros_like(some.places), np.zeros_like(some.normals))
-        found[name] = joined(after.get(name, zero), before.get(name, zero), -1.0)
+        still = Target(np.zeros_like(some.places), None if some.normals is None else np.zeros_like(some.normals))
+        found[name] = less(after.get(name, still), before.get(name, still))
     return found
 
 
@@ -93,8 +92,3 @@ class ShapeWeights:
     def error_rms_mm(self) -> float:
         """The root of the mean square of all vertices' distances."""
         return float(np.sqrt(np.mean([square for _, square in self._errors])))
-
-
-def of_part(shapes: Shapes, name: str, order: Sequence[str]) -> dict[str, Target]:
-    """The shapes that move one part, in their order."""
-    return {shape: shapes[shape][name] for shape in order if name in shapes[shape]}

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
-from agentface.conventions import SIDES, Floats
+from agentface.conventions import Doubles, Floats
 from agentface.deform.protocol import Deformer
 from agentface.errors import InvalidValueError
 from agentface.head.arkit import ARKIT_SHAPES
@@ -17,12 +17,12 @@ from agentface.head.model import HeadModel
 from agentface.head.provenance import read_provenance
 from agentface.io.gltf.arkit_shapes import ShapeWeights, bake_arkit
 from agentface.io.gltf.face_parts import FacePart, face_parts
-from agentface.io.gltf.figure import Figure, add_joints, neck_of
+from agentface.io.gltf.figure import Figure, Joints, add_joints, eyes_of
 from agentface.io.gltf.materials import add_materials
 from agentface.io.gltf.modes import ModeFinder
 from agentface.io.gltf.recorder import SurfaceRecorder
 from agentface.io.gltf.surface import Surface
-from agentface.io.gltf.writer import GltfWriter, Target, Track, quaternions
+from agentface.io.gltf.writer import GltfWriter, NodeTrack, Target, quaternions
 
 ERROR_MM, MOST_MODES = 0.1, 128
 LONGEST = 20_000
@@ -99,8 +99,8 @@ class FaceGlb:
 
     def _file(self, shaped: _Shaped, recorder: SurfaceRecorder | None) -> GlbFace:
         writer = GltfWriter(read_provenance(self.model.folder).copyright_line)
-        body, head, eyes = add_joints(writer, self.model)
-        figure = Figure(writer, self.model, body, head, eyes, np.zeros(3))
+        joints = add_joints(writer, self.model)
+        figure = Figure(writer, self.model, joints)
         materials = add_materials(writer, self.model, self.look, self.parts)
         tracks = []
         for part in self.parts:
@@ -109,22 +109,21 @@ class FaceGlb:
             node = figure.add(part, materials[part.material], targets)
             if shaped.weights is not None and own:
                 columns = [shaped.order.index(name) for name in own]
-                tracks.append(Track(node, "weights", shaped.weights[:, columns].ravel()))
+                tracks.append(NodeTrack(node, "weights", shaped.weights[:, columns].ravel()))
         if recorder is not None:
-            tracks += self._turns(recorder, head, eyes)
+            tracks += self._turns(recorder, joints)
             writer.animation("performance", recorder.times_s, tracks)
         content = writer.content()
         return GlbFace(content, self._figures(content, shaped, recorder))
 
-    def _turns(self, recorder: SurfaceRecorder, head: int, eyes: Sequence[int]) -> list[Track]:
-        tracks = [Track(head, "rotation", quaternions(recorder.heads))]
-        neck = neck_of(self.model)
-        for number, side in enumerate(SIDES):
-            tracks.append(Track(eyes[number], "rotation", quaternions(recorder.eyes[:, number])))
+    def _turns(self, recorder: SurfaceRecorder, joints: Joints) -> list[NodeTrack]:
+        tracks = [NodeTrack(joints.nodes["head"], "rotation", quaternions(recorder.heads))]
+        for number, name in enumerate(eyes_of(self.model)):
+            tracks.append(NodeTrack(joints.nodes[name], "rotation", quaternions(recorder.eyes[:, number])))
             thrust = recorder.thrusts[:, number]
             if thrust.any():
-                centre = self.model.eye_centre(side) - neck
-                tracks.append(Track(eyes[number], "translation", _forward(centre, thrust)))
+                centre = joints.at[name] - joints.at["head"]
+                tracks.append(NodeTrack(joints.nodes[name], "translation", _forward(centre, thrust)))
         return tracks
 
     def _figures(self, content: bytes, shaped: _Shaped, recorder: SurfaceRecorder | None) -> dict[str, Any]:
@@ -148,7 +147,7 @@ def part_figures(part: FacePart) -> dict[str, int]:
     return {"vertices": count, "triangles": len(part.triangles)}
 
 
-def _forward(centre: np.typing.ArrayLike, thrust: Floats) -> Floats:
+def _forward(centre: Doubles, thrust: Floats) -> Floats:
     places = np.tile(np.asarray(centre, np.float32), (len(thrust), 1))
     places[:, 2] += thrust
     return places

@@ -14,29 +14,32 @@ from agentface.deform.geometry import FaceGeometry
 from agentface.head.look import Look
 from agentface.head.model import HeadModel
 from agentface.mesh.normals import vertex_normals
+from agentface.mesh.smoothstep import smoothstep
 from agentface.view.bake.flat import EYE_INSET
-from agentface.view.dressing import grown_hair, irregularities, shade
+from agentface.view.dressing import dressed_skin, grown_hair, irregularities
 from agentface.view.hair.grown import GrownHair
 from agentface.view.hair.hair_mesh import hair_colours, hair_strips, hair_triangles, strand_mesh
 from agentface.view.hair.ribbons import Hairs
 from agentface.view.hair.sheets import LOCKS
 from agentface.view.parts.anchored import Anchored, eye_linings
 from agentface.view.parts.teeth import crown_places
-from agentface.view.skin.complexion import folds
 from agentface.view.skin.shirt import shirt, uncovered
 
 Rides: TypeAlias = Literal["skin", "head", "body", "eye_l", "eye_r"]
 """What turns a part: the head and, where it holds on to the neck, the body, as the skin; one of them; an eye."""
 PlacesAndNormals: TypeAlias = tuple[Floats, Floats]
-_SEED = 20
 _STRANDS = "fast"
 _CAP_AXIS = np.array([0.0, 0.75, -0.66])
 _CAP_REACH = np.radians(165.0)
 _SHADED = 0.75
 """How much darker the skin's deepest folds are than what no fold keeps light from."""
-_IN_MOUTH, _IN_NOSE = 0.7, 0.5
+_IN_MOUTH = (0.40, 0.16, 0.15)
+"""What of the skin's colour is left on the inside of the mouth."""
+_ASIDE_SHADE, _LID_SHADE = 0.6, 0.5
+_SHADED_EYE = (0.0, 0.0, 0.0)
 GUM, TONGUE = (0.46, 0.20, 0.185), (0.40, 0.15, 0.145)
 """As in ``shaders/part.frag.glsl``."""
+_BEHIND_LIPS = 0.85
 _BETWEEN_TEETH, _AT_GUM = (0.74, 0.64, 0.56), (0.96, 0.90, 0.83)
 
 
@@ -54,6 +57,7 @@ class FacePart:
         uv: ``(N, 2)`` texture coordinates as in glTF, or None.
         colours: ``(N, 3)`` linear 0..1, or None.
         stays: ``(N,)`` 0..1, for one that rides as the skin: how much of it does not turn with the head.
+        turning: whether its normals change enough to be seen.
     """
 
     name: str
@@ -64,6 +68,7 @@ class FacePart:
     uv: Floats | None = None
     colours: Floats | None = None
     stays: Floats | None = None
+    turning: bool = True
 
 
 def released(model: HeadModel, geometry: FaceGeometry) -> FaceGeometry:
@@ -78,22 +83,22 @@ def released(model: HeadModel, geometry: FaceGeometry) -> FaceGeometry:
 def face_parts(model: HeadModel, look: Look) -> list[FacePart]:
     """All meshes of a face: skin, teeth, tongue, eyes and their linings, brows, lashes, hair, shirt."""
     grown = grown_hair(model, look)
-    parts = [
+    return [
         _skin(model, look, grown),
         *_mouth(model, look),
         *_eyes(model),
         *_linings(model),
         *_small_hairs(model, look),
+        *(() if grown is None else _head_hair(model, grown)),
+        _shirt(model),
     ]
-    if grown is not None:
-        parts += _head_hair(model, grown)
-    return [*parts, _shirt(model)]
 
 
 def _skin(model: HeadModel, look: Look, grown: GrownHair | None) -> FacePart:
     mouth = np.clip((model.material[:, 1] - 0.35) / 0.55, 0.0, 1.0)
-    light = folds(model)[:, 0] * (1.0 - shade(model, look.hair, grown))
-    light = (1.0 - _SHADED * (1.0 - light)) * (1.0 - _IN_MOUTH * mouth)
+    light = dressed_skin(model, look, grown)["ambient"][:, 0]
+    light = 1.0 - _SHADED * (1.0 - light)
+    colours = light[:, None] * (1.0 + mouth[:, None] * (np.array(_IN_MOUTH) - 1.0))
     return FacePart(
         "skin",
         "skin",
@@ -101,7 +106,7 @@ def _skin(model: HeadModel, look: Look, grown: GrownHair | None) -> FacePart:
         uncovered(model),
         lambda geometry: (geometry.vertices, geometry.normals),
         uv=model.uv,
-        colours=np.repeat(light[:, None], 3, axis=1).astype(np.float32),
+        colours=colours.astype(np.float32),
         stays=np.float32(1.0) - neck.shares(model),
     )
 
@@ -138,7 +143,7 @@ def _mouth_colours(model: HeadModel, look: Look, name: str) -> Floats:
     mixed = matter[:, :1] * (tooth * (1.0 - gum) + gum * GUM) + matter[:, 1:2] * GUM + matter[:, 2:3] * TONGUE
     behind = np.clip((mesh.attributes["POSITION"][:, 2] - model.parts["teeth_upper"].attributes["POSITION"][:, 2].min())
                      / 0.045, 0.0, 1.0)  # fmt: skip
-    return np.clip(mixed * (0.35 + 0.65 * behind[:, None]), 0.0, 1.0).astype(np.float32)
+    return np.clip(_BEHIND_LIPS * mixed * (0.25 + 0.75 * behind[:, None]), 0.0, 1.0).astype(np.float32)
 
 
 def _eyes(model: HeadModel) -> list[FacePart]:
@@ -153,8 +158,17 @@ def _eyes(model: HeadModel) -> list[FacePart]:
         flat = np.where((flat[:, 2:] < 0.0) & (reach > 0.0), flat[:, :2] / np.maximum(reach, 1e-6), flat[:, :2])
         uv = (0.5 + 0.5 * EYE_INSET * flat).astype(np.float32)
         rides: Rides = "eye_l" if side == SIDES[0] else "eye_r"
-        parts.append(FacePart(rides, "eye", rides, mesh.triangles, _still(still), uv=uv))
+        shade = _eye_light(places / np.float32(model.eyes.radius))
+        parts.append(FacePart(rides, "eye", rides, mesh.triangles, _still(still), uv, shade))
     return parts
+
+
+def _eye_light(places: Floats) -> Floats:
+    """``(N, 3)``: how much light lids and lashes leave to an eye that looks ahead, ``places`` in its radii."""
+    aside = smoothstep(0.35, 0.95, np.hypot(places[:, 0], 0.8 * places[:, 1]))
+    above = smoothstep(0.05, 0.55, places[:, 1])
+    light = (1.0 - _ASIDE_SHADE * aside) * (1.0 - _LID_SHADE * above)
+    return np.repeat(light[:, None], 3, axis=1).astype(np.float32)
 
 
 def _linings(model: HeadModel) -> list[FacePart]:
@@ -172,10 +186,13 @@ def _linings(model: HeadModel) -> list[FacePart]:
 def _small_hairs(model: HeadModel, look: Look) -> list[FacePart]:
     chance = irregularities(model, look)
     return [
-        FacePart(name, "hair", "head", hair_triangles(hairs), _on_skin(hairs), colours=hair_colours(hairs))
-        for name, hairs in (("brows", chance.brows), ("lashes", chance.lashes))
+        FacePart(
+            name, "hair", "head", hair_triangles(hairs), _on_skin(hairs), colours=hair_colours(hairs, under),
+            turning=False,
+        )
+        for name, hairs, under in (("brows", chance.brows, look.skin.tone), ("lashes", chance.lashes, _SHADED_EYE))
         if len(hairs)
-    ]
+    ]  # fmt: skip
 
 
 def _on_skin(hairs: Hairs) -> Callable[[FaceGeometry], PlacesAndNormals]:
@@ -183,26 +200,26 @@ def _on_skin(hairs: Hairs) -> Callable[[FaceGeometry], PlacesAndNormals]:
 
 
 def _head_hair(model: HeadModel, grown: GrownHair) -> list[FacePart]:
-    cap = grown.cap()
-    stays = np.float32(1.0) - neck.shares(model)
+    cap, centre = grown.cap(), grown.centre
+    stays = np.asarray(1.0 - neck.shares(model), np.float32)
     parts = [
         FacePart(
-            "scalp", "scalp", "skin", cap.triangles, _riding(model, cap), uv=cap_places(cap.vertices, grown.centre),
+            "scalp", "scalp", "skin", cap.triangles, _riding(model, cap), uv=cap_places(cap.vertices, centre),
             stays=np.asarray(stays[cap.anchors].mean(axis=1), np.float32),
         )
     ]  # fmt: skip
-    strands = strand_mesh(grown.strands(_STRANDS), model.vertices, grown.centre)
+    strands = strand_mesh(grown.strands(_STRANDS), model.vertices, centre)
     hold, facing = strands.anchors, strands.normals
     parts.append(
         FacePart(
             "hair", "hair", "skin", strands.triangles, lambda g: (g.vertices[hold] + strands.offsets, facing),
-            colours=strands.colours, stays=stays[hold],
+            colours=strands.colours, stays=np.asarray(stays[hold], np.float32),
         )
     )  # fmt: skip
     for number, sheet in enumerate(grown.sheets):
         rows, triangles = sheet.mesh()
         still = rows[:, :3].copy(), rows[:, 6:9].copy()
-        uv = rows[:, 9:11] / np.array([LOCKS, 1.0], np.float32)
+        uv = np.asarray(rows[:, 9:11] / np.array([LOCKS, 1.0]), np.float32)
         light = np.repeat(np.clip(rows[:, 11:12], 0.0, 1.0), 3, axis=1)
         parts.append(FacePart(f"hair_sheet_{number}", "hair_sheet", "head", triangles, _still(still), uv, light))
     return parts

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -14,54 +15,56 @@ from agentface.io.gltf.face_parts import FacePart
 from agentface.io.gltf.writer import GltfWriter, Target
 
 
-class Figure:
-    """Adds the meshes of a face to a document whose joints are there.
+@dataclass(frozen=True)
+class Joints:
+    """The nodes that a face hangs on, and where they stand.
 
-    Args:
-        writer: the document.
-        model: the face.
-        body, head: the nodes on which it hangs; unturned, the head's stands at the neck.
-        eyes: the nodes of the left and the right eye, at their centres.
-        origin: ``(3,)`` m, where the model's origin stands in the document's axes.
+    Attributes:
+        nodes: of ``body``, ``head``, ``eye_l`` and ``eye_r``; none is turned.
+        at: ``(3,)`` m, where each of them stands in the scene.
+        origin: ``(3,)`` m, where the model's origin is.
     """
 
-    def __init__(
-        self, writer: GltfWriter, model: HeadModel, body: int, head: int, eyes: Sequence[int], origin: Doubles
-    ) -> None:
-        self._writer, self._origin = writer, np.asarray(origin, np.float64)
-        self._on = {"body": body, "head": head, "eye_l": eyes[0], "eye_r": eyes[1]}
-        self._neck = neck_of(model)
+    nodes: dict[str, int]
+    at: dict[str, Doubles]
+    origin: Doubles
+
+
+class Figure:
+    """Adds the meshes of a face to a document whose joints are there."""
+
+    def __init__(self, writer: GltfWriter, model: HeadModel, joints: Joints) -> None:
+        self._writer, self._joints = writer, joints
         self._skin: int | None = None
-        self.rest = FaceGeometry.at_rest(model)
-        self.meshes: dict[str, int] = {}
-        """The nodes of the parts by name."""
+        self._rest = FaceGeometry.at_rest(model)
 
     def add(self, part: FacePart, material: int, targets: Mapping[str, Target]) -> int:
         """A part with its morph targets; returns its node."""
         skinned = part.rides == "skin"
-        places, normals = part.at(self.rest)
-        shift = self._shift(part)
-        mesh = self._writer.mesh(part, ((places + shift).astype(np.float32), normals), material, targets, skinned)
-        piece = {"name": part.name, "mesh": mesh}
-        if skinned:
+        places, normals = part.at(self._rest)
+        rest = (places + self._shift(part)).astype(np.float32), normals
+        piece = {"name": part.name, "mesh": self._writer.mesh(part, rest, material, targets, skinned)}
+        if skinned:  # its joints alone say where it is
             node = self._writer.add("nodes", {**piece, "skin": self._hanging()})
             self._writer.document["scenes"][0]["nodes"].append(node)
         else:
             node = self._writer.add("nodes", piece)
-            self._writer.document["nodes"][self._on[part.rides]].setdefault("children", []).append(node)
-        self.meshes[part.name] = node
+            self._writer.document["nodes"][self._joints.nodes[part.rides]].setdefault("children", []).append(node)
         return node
 
     def _shift(self, part: FacePart) -> Doubles:
-        """From a part's axes to its node's: joints have no turn at rest, a head's parts are about the neck."""
+        """From the axes of a part to those of its node."""
         if part.rides == "skin":
-            return self._origin
-        return -self._neck if part.rides == "head" else np.zeros(3)
+            return self._joints.origin
+        if part.rides in ("eye_l", "eye_r"):
+            return np.zeros(3)
+        return self._joints.origin - self._joints.at[part.rides]
 
     def _hanging(self) -> int:
         if self._skin is None:
-            joints = [self._on["head"], self._on["body"]]
-            self._skin = self._writer.skin("neck", joints, self._origin + np.stack([self._neck, np.zeros(3)]))
+            names = ("head", "body")
+            at = np.stack([self._joints.at[name] for name in names])
+            self._skin = self._writer.skin("neck", [self._joints.nodes[name] for name in names], at)
         return self._skin
 
 
@@ -70,18 +73,20 @@ def neck_of(model: HeadModel) -> Doubles:
     return head_turn.prepare(model).neck.astype(np.float64)
 
 
-def add_joints(writer: GltfWriter, model: HeadModel) -> tuple[int, int, tuple[int, int]]:
+def add_joints(writer: GltfWriter, model: HeadModel) -> Joints:
     """A body at the model's origin, its head, and the eyes of that: for a scene of a face alone."""
-    neck = neck_of(model)
-    eyes = [
-        writer.add("nodes", {"name": f"eye_{side}_turn", "translation": (model.eye_centre(side) - neck).tolist()})
-        for side in SIDES
-    ]
-    head = writer.add("nodes", {"name": "head", "translation": neck.tolist(), "children": list(eyes)})
-    body = writer.add("nodes", {"name": model.name, "children": [head]})
-    writer.document["scenes"][0]["nodes"].append(body)
-    return body, head, (eyes[0], eyes[1])
+    at = {"body": np.zeros(3), "head": neck_of(model)} | eyes_of(model)
+    nodes = {
+        name: writer.add("nodes", {"name": f"{name}_turn", "translation": (at[name] - at["head"]).tolist()})
+        for name in ("eye_l", "eye_r")
+    }
+    children = list(nodes.values())
+    nodes["head"] = writer.add("nodes", {"name": "head", "translation": at["head"].tolist(), "children": children})
+    nodes["body"] = writer.add("nodes", {"name": model.name, "children": [nodes["head"]]})
+    writer.document["scenes"][0]["nodes"].append(nodes["body"])
+    return Joints(nodes, at, np.zeros(3))
 
 
-Told = Callable[[float], object]
-"""Gets how much of a long piece of work is done."""
+def eyes_of(model: HeadModel) -> dict[str, Doubles]:
+    """``(3,)`` m by ``eye_l`` and ``eye_r``: their centres."""
+    return {f"eye_{side}": model.eye_centre(side).astype(np.float64) for side in SIDES}

@@ -15,12 +15,11 @@ from agentface.io.gltf.face_parts import FacePart
 from agentface.io.gltf.writer import GltfWriter
 from agentface.io.picture import encode
 from agentface.view.bake.flat import FlatPainter
-from agentface.view.dressing import covered, grown_hair
+from agentface.view.dressing import dressed_skin, grown_hair
 from agentface.view.gl.ownership import Ownership
-from agentface.view.skin.complexion import complexion
 from agentface.view.skin.template import skin_template
 
-SKIN_SIDE, EYE_SIDE, HAIR_SIDE = 1024, 512, 1024
+SKIN_SIDE, EYE_SIDE, HAIR_SIDE, SCALP_SIDE = 1024, 512, 1024, 512
 _ROUGH = {"skin": 0.5, "eye": 0.08, "teeth": 0.2, "tongue": 0.35, "flesh": 0.45, "hair": 0.6, "hair_sheet": 0.5,
           "scalp": 0.75, "cloth": 0.9}  # fmt: skip
 _BOTH_SIDES = ("hair", "hair_sheet", "flesh")
@@ -68,7 +67,7 @@ def face_pictures(model: HeadModel, look: Look, parts: Sequence[FacePart]) -> di
 
 def _skin_picture(model: HeadModel, look: Look) -> Bytes:
     """The complexion with beard, brows and scalp, and what the look wears on it."""
-    tints = complexion(model, covered(model, look.hair), look.skin.stubble)
+    tints = dressed_skin(model, look, None)["complexion"]
     own = skin_template(model, look, SKIN_SIDE, tints=tints)[..., :3]
     worn = skin_image(look, SKIN_SIDE)
     if worn is None:
@@ -83,9 +82,11 @@ def _skin_picture(model: HeadModel, look: Look) -> Bytes:
 def _scalp_picture(painter: FlatPainter, model: HeadModel, look: Look, parts: Sequence[FacePart]) -> Bytes:
     grown = grown_hair(model, look)
     (uv,) = (part.uv for part in parts if part.material == "scalp")
-    assert uv is not None and grown is not None, "the scalp has a picture"  # noqa: S101, PT018 - for the type checker
-    mesh = grown.cap()
-    return painter.cap(look, (uv, mesh.vertices, mesh.material[:, :1], mesh.triangles), grown.parting, HAIR_SIDE)
+    assert grown is not None, "there is hair on the scalp"  # noqa: S101 - for the type checker
+    assert uv is not None, "the scalp has a picture"  # noqa: S101 - for the type checker
+    # coils are seen themselves
+    cap, side = grown.cap(), HAIR_SIDE if grown.coils else SCALP_SIDE
+    return painter.cap(look, grown, (uv, cap.vertices, cap.material[:, :1], cap.triangles), side)
 
 
 def _material(name: str, look: Look, texture: int | None) -> dict[str, Any]:

@@ -9,7 +9,7 @@ import numpy as np
 from agentface.conventions import Doubles
 from agentface.deform.geometry import FaceGeometry
 from agentface.head.model import HeadModel
-from agentface.io.gltf.face_parts import FacePart
+from agentface.io.gltf.face_parts import FacePart, PlacesAndNormals
 from agentface.io.gltf.writer import Target, moved_between
 from agentface.mesh.normals import vertex_normals
 
@@ -45,8 +45,7 @@ class Surface:
 
     def targets(self, geometry: FaceGeometry) -> dict[str, Target]:
         """By part, how a released geometry differs from rest; parts that do not move are left out."""
-        found = {part.name: moved_between(self._rest[part.name], part.at(geometry)) for part in self._parts}
-        return _moving(found)
+        return _moving({part.name: self._target(part, part.at(geometry)) for part in self._parts})
 
     def targets_of(self, row: Doubles) -> dict[str, Target]:
         """By part, what a movement ``(3 N,)`` m of the skin, the lower teeth and the tongue makes of all."""
@@ -61,8 +60,12 @@ class Surface:
             if part.name in shown and part.name != SOFT[0]:
                 places = shown[part.name]
                 there = places, vertex_normals(places, part.triangles).astype(np.float32)
-            found[part.name] = moved_between(self._rest[part.name], there)
+            found[part.name] = self._target(part, there)
         return _moving(found)
+
+    def _target(self, part: FacePart, there: PlacesAndNormals) -> Target:
+        target = moved_between(self._rest[part.name], there)
+        return target if part.turning else Target(target.places)
 
 
 def apart_mm(rows: Doubles) -> Doubles:
@@ -70,12 +73,11 @@ def apart_mm(rows: Doubles) -> Doubles:
     return np.asarray(1e3 * np.linalg.norm(rows.reshape(*rows.shape[:-1], -1, 3), axis=-1))
 
 
-def joined(first: Target, second: Target, share: float) -> Target:
-    """``first`` and ``share`` times ``second``."""
-    assert first.normals is not None, "made with normals"  # noqa: S101 - for the type checker
-    assert second.normals is not None, "made with normals"  # noqa: S101 - for the type checker
-    share_ = np.float32(share)
-    return Target(first.places + share_ * second.places, first.normals + share_ * second.normals)
+def less(first: Target, second: Target) -> Target:
+    """``first`` without ``second``."""
+    if first.normals is None or second.normals is None:
+        return Target(first.places - second.places)
+    return Target(first.places - second.places, first.normals - second.normals)
 
 
 def _moving(found: dict[str, Target]) -> dict[str, Target]:

@@ -99,7 +99,7 @@ class GltfWriter(GltfBuffer):
             "skins", {"name": name, "joints": list(joints), "inverseBindMatrices": self.numbers(bind.reshape(-1, 16))}
         )
 
-    def animation(self, name: str, times_s: Doubles, tracks: Sequence[Track]) -> int:
+    def animation(self, name: str, times_s: Doubles, tracks: Sequence[NodeTrack]) -> int:
         """What nodes do at some times, and linearly between them."""
         times = self.numbers(np.asarray(times_s, np.float32))
         samplers = [
@@ -121,19 +121,19 @@ class GltfWriter(GltfBuffer):
         return {"JOINTS_0": self.attribute("JOINTS_0", joints), "WEIGHTS_0": self.attribute("WEIGHTS_0", weights)}
 
     def _target(self, name: str, target: Target) -> dict[str, int]:
-        found = {"POSITION": self._offsets(name, target.places, _STILL_M)}
+        found = {"POSITION": self._offsets(name, "POSITION", target.places, _STILL_M)}
         if target.normals is not None:
-            found["NORMAL"] = self._offsets(name, target.normals, _STILL_NORMAL)
+            found["NORMAL"] = self._offsets(name, "NORMAL", target.normals, _STILL_NORMAL)
         return found
 
-    def _offsets(self, name: str, offsets: Floats, still: float) -> int:
+    def _offsets(self, shape: str, name: str, offsets: Floats, still: float) -> int:
         moved = np.flatnonzero(np.abs(offsets).max(axis=1) > still).astype(np.int32)
         if len(moved) <= _SPARSE * len(offsets):
-            return self.sparse(name, moved, offsets[moved], len(offsets))
-        return self.numbers(offsets)
+            return self.sparse(f"shape {shape}", moved, offsets[moved], len(offsets))
+        return self.attribute(name, np.asarray(offsets, np.float32))
 
 
-class Track(NamedTuple):
+class NodeTrack(NamedTuple):
     """What one node does: ``values`` a row a time; of weights, ``(T * W,)``."""
 
     node: int

@@ -10,11 +10,12 @@ from typing import Any, TypeAlias
 from agentface.clock import Clock
 from agentface.errors import AgentFaceError, InvalidValueError
 from agentface.face import Face
+from agentface.io.datagrams import Sender
 from agentface.io.osc.addresses import ERROR, FEEDBACK, PREFIX, STATUS, Addresses, check_id, pressed, reason_and_hint
 from agentface.io.osc.codec import MalformedError, Message, address_of, decode, encode
 from agentface.io.osc.feedback import Feedback
 from agentface.io.osc.rate_limit import RateLimit
-from agentface.io.osc.schedule import FURTHEST_S, MOST, Schedule, Sender, Waiting
+from agentface.io.osc.schedule import FURTHEST_S, MOST, Schedule, Waiting
 from agentface.motion.doing import Doing
 from agentface.requests import PlayBlock
 
@@ -94,6 +95,7 @@ class Receiver:
                     self._faces[face].message_counts.messages += 1
 
     def _plan(self, waiting: Waiting, date: float | None, newest: _Newest) -> None:
+        self._performers(waiting)
         now = self._clock.date()
         if date is None or date <= now:
             self._put(newest, waiting)
@@ -108,11 +110,24 @@ class Receiver:
 
     def _put(self, newest: _Newest, waiting: Waiting) -> None:
         # Taken out first: requests are applied in the order of their newest message.
-        for face in self.addresses.ids(waiting.address):
+        for face in self._performers(waiting):
             key = face, *waiting.request.key
             asked = newest.pop(key, (face, []))[1]
             asked.append(waiting)
             newest[key] = face, asked
+
+    def _performers(self, waiting: Waiting) -> Iterable[str]:
+        """The faces that a message is for: of a BML block, that whose id is its character, where one has it.
+
+        Raises InvalidValueError where the address means others.
+        """
+        faces = self.addresses.ids(waiting.address)
+        character = waiting.request.block.character if isinstance(waiting.request, PlayBlock) else ""
+        if not self._several or character not in self._faces:
+            return faces
+        if character not in faces:
+            raise InvalidValueError("characterId", f"a face that the address means: {', '.join(faces)}", character)
+        return (character,)
 
     def _apply(self, face: str, waiting: Waiting) -> bool:
         try:

@@ -43,6 +43,7 @@ class LifeChannel:
         *("gaze_yaw", "gaze_pitch"),
         *("head_yaw", "head_pitch", "head_roll"),
         *(f"{name}_{side}" for name in ("nostril_flare", "pupil_dilation") for side in SIDES),
+        "breath",
     )
 
     def __init__(
@@ -185,6 +186,7 @@ class LifeChannel:
             nostrils * other_air,
             presence * (wider + movement * left),
             presence * (wider + movement * right),
+            moved * figures.chest * full,
         )
         return True
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -12,6 +11,7 @@ from agentface.head.look import HairLook, Look
 from agentface.head.skin_image import bled
 from agentface.view.gl.context import compile_program
 from agentface.view.gl.noise import SIDE, noise_volume
+from agentface.view.hair.grown import GrownHair
 from agentface.view.hair.sheets import LOCKS
 from agentface.view.parts.rigid import IRIS_RADIUS
 
@@ -59,16 +59,13 @@ class FlatPainter:
         }
         return bled(self._drawn(self._program("sheet_flat", "sheet", values), size))
 
-    def cap(
-        self, look: Look, mesh: tuple[Floats, Floats, Floats, Indices], parting: Sequence[float], size: int
-    ) -> Bytes:
+    def cap(self, look: Look, grown: GrownHair, mesh: tuple[Floats, Floats, Floats, Indices], size: int) -> Bytes:
         """The layer on the scalp: ``mesh`` is its ``uv (N, 2)``, places at rest, depths ``(N, 1)`` and triangles."""
-        coiled = look.hair.style == "cropped"
         values = {
-            "lit_colour": srgb((_COILED if coiled else _SMOOTH) * np.array(look.hair.colour)),
+            "lit_colour": srgb((_COILED if grown.coils else _SMOOTH) * np.array(look.hair.colour)),
             "scalp_colour": srgb(_SCALP * np.array(look.skin.tone)),
-            "coils": float(coiled),
-            "parting": tuple(parting),
+            "coils": grown.coils,
+            "parting": grown.parting,
         }
         program = self._program("cap_flat", "cap", values)
         layout = [

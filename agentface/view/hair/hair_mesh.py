@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -14,6 +15,7 @@ from agentface.view.hair.strands import Strands
 _STEPS = np.linspace(0.0, 1.0, 4)
 _FORWARD = np.array([0.0, 0.0, 1.0])
 _LIGHTER_TIP = 1.2
+_OPAQUE = 0.9
 _HELD = 0.25
 """Of the distance from the vertical axis: a strand lower than that is lit as if it hung this low."""
 
@@ -80,9 +82,11 @@ def hair_triangles(hairs: Hairs) -> Indices:
     return strips(len(hairs), len(_STEPS))
 
 
-def hair_colours(hairs: Hairs) -> Floats:
-    """``(8 H, 3)`` linear, of the same vertices."""
-    return np.repeat(hairs.paint[:, :3], 2 * len(_STEPS), axis=0).astype(np.float32)
+def hair_colours(hairs: Hairs, under: Sequence[float]) -> Floats:
+    """``(8 H, 3)`` linear, of the same vertices: what of the colour ``under`` them hairs let through is theirs."""
+    opaque = _OPAQUE * hairs.paint[:, 3:]
+    colours = opaque * hairs.paint[:, :3] + (1.0 - opaque) * np.asarray(under)
+    return np.repeat(colours, 2 * len(_STEPS), axis=0).astype(np.float32)
 
 
 def strips(count: int, each: int) -> Indices:

@@ -16,7 +16,6 @@ from agentface.agents.mcp.actor import Actor
 from agentface.agents.mcp.report import FaceReport
 from agentface.agents.mcp.server import face_server
 from agentface.errors import MissingPackageError
-from agentface.io.web.inbox import Inbox
 from tests.voices import FakeVoice, talking_face
 
 NAMES = {
@@ -34,16 +33,16 @@ def voice():
 def actor(voice):
     """A face that another thread steps, 20 ms at a time, as fast as it can."""
     with talking_face(voice) as face:
-        inbox, over = Inbox(), threading.Event()
+        made, over = Actor(face.model), threading.Event()
+        made.made.set_result(face)
 
         def steps():
             while not over.wait(0.001):
-                inbox.take_in()
+                made.take_in()
                 face.step(0.02)
 
         thread = threading.Thread(target=steps)
         thread.start()
-        made = Actor(face, inbox)
         yield made
         over.set()
         thread.join()
@@ -115,7 +114,7 @@ def test_gaze_state_and_gestures(actor):
     )
     assert report(answers[1]).state == "thinking"
     assert not any(answer.is_error for answer in answers)
-    assert actor.face.channels.gaze.point == (0.1, 0.0, 0.6)
+    assert actor.made.result().channels.gaze.point == (0.1, 0.0, 0.6)
 
 
 def test_it_says_texts_and_tells_what_waits(actor, voice):
@@ -169,10 +168,10 @@ def test_a_voice_that_fails_is_an_error_at_once(actor):
     ],
 )
 def test_what_is_wrong_is_told_so_that_a_model_can_act(actor, tool, arguments, told):
-    before = actor.face.channels.emotion.target
+    before = actor.made.result().channels.emotion.target
     text = refusal(actor, tool, arguments)
     assert [part for part in told if part not in text] == [], text
-    assert actor.face.channels.emotion.target == before
+    assert actor.made.result().channels.emotion.target == before
 
 
 @pytest.mark.gl
@@ -191,10 +190,34 @@ def test_a_picture_shows_the_face(actor):
 
 def test_a_face_that_has_ended_is_an_error(voice):
     with talking_face(voice) as face:
-        actor = Actor(face, Inbox())
-        actor.inbox.close()
-        assert "ended" in refusal(actor, "neutral", {})
+        actor = Actor(face.model)
+        actor.made.set_result(face)
         actor.close()
+        assert "ended" in refusal(actor, "neutral", {})
+
+
+def test_who_asks_before_the_face_is_made_waits_for_it(actor):
+    early, face = Actor(actor.model), actor.made.result()
+
+    async def run():
+        async with Client(face_server(early)) as client:
+            asked = asyncio.create_task(client.call_tool("status", {}))
+            assert (await client.list_tools()).tools
+            assert not asked.done()
+            early.made.set_result(face)
+            while not asked.done():
+                early.take_in()
+                await asyncio.sleep(0.01)
+            return await asked
+
+    assert report(asyncio.run(run())).face == face.model.name
+    early.close()
+
+
+def test_who_waits_for_a_face_that_never_is_made_is_told(actor):
+    early = Actor(actor.model)
+    early.close()
+    assert "ended" in refusal(early, "status", {})
 
 
 def test_without_the_package_one_error_names_the_extra(actor, monkeypatch):
