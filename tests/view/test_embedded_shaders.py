@@ -27,30 +27,17 @@ def test_a_shader_of_another_version_is_refused(tmp_path):
         embedded(read_source("old.glsl", tmp_path))
 
 
+def declared(shader: str, way: str) -> set[str]:
+    lines = re.findall(rf"^(?:(?:flat|centroid) )?{way} \w+ ([\w, ]+);", shader, re.MULTILINE)
+    return {name for line in lines for name in line.split(", ")}
+
+
 @pytest.mark.parametrize("textured", [False, True])
 def test_every_input_of_a_fragment_is_an_output_of_its_vertex(textured):
     made = programs(textured=textured)
-    assert {
-        "skin",
-        "skin-wrinkled",
-        "eye",
-        "part",
-        "lining",
-        "cloth",
-        "ribbon",
-        "strand",
-        "sheet",
-        "cap",
-    } <= made.keys()
+    assert {"skin", "skin-wrinkled", "eye", "part", "lining", "cloth", "ribbon", "strand", "sheet", "cap"} <= {*made}
     for name, program in made.items():
-        declared = re.compile(r"^(?:(?:flat|centroid) )?(in|out) \w+ ([\w, ]+);", re.MULTILINE)
-        outputs = {
-            part for way, names in declared.findall(program["vertex"]) if way == "out" for part in names.split(", ")
-        }
-        inputs = {
-            part for way, names in declared.findall(program["fragment"]) if way == "in" for part in names.split(", ")
-        }
-        assert inputs <= outputs, name
+        assert declared(program["fragment"], "in") <= declared(program["vertex"], "out"), name
     assert ("#define TEXTURED" in made["skin"]["fragment"]) == textured
     assert "#define WRINKLED" in made["skin-wrinkled"]["vertex"]
 
