@@ -19,6 +19,7 @@ from agentface.commands.streams import tell
 if TYPE_CHECKING:
     from agentface.face import Face
     from agentface.io.gltf.recorder import SurfaceRecorder
+    from agentface.io.web.performance_page import PerformancePage
 
 
 _SHAPES, _EXPRESSIONS = 52, 18 + 52
@@ -67,12 +68,13 @@ class Asked:
 @json_option
 @face_options
 def export(*, json_file: str | None, **options: Any) -> None:
-    """Write a face for other programs: .glb for anything that draws in three dimensions, .vrm for avatars.
+    """Write a face for other programs: .glb for anything that draws, .vrm for avatars, .html for browsers.
 
     \b
     agentface export amber.glb                               # with ARKit's 52 shapes
     agentface export smile.glb --performance smile.fap       # what the face does, to 0.1 mm
     agentface export onyx.vrm --face onyx                    # VRM 1.0: expressions, visemes, look-at
+    agentface export hello.html --performance hello.bml      # plays in any browser, with its sound, without a network
     """  # noqa: D301 - \b is click's mark of lines to keep
     from agentface.io.files import check_writable
 
@@ -132,7 +134,32 @@ def _vrm(asked: Asked) -> dict[str, Any]:
     return {"format": "vrm", **made.figures}
 
 
-def _playing(face: Face, found: Opened, fps: float | None, ending: Ending) -> Callable[[SurfaceRecorder], None]:
+def _html(asked: Asked) -> dict[str, Any]:
+    from agentface.head.look import load_look
+    from agentface.io.files import write_file
+    from agentface.io.web.performance_page import PerformancePage
+    from agentface.io.web.stage import basis_of
+
+    if asked.performance is None:
+        raise click.UsageError("a .html plays a performance: --performance FILE says which")
+    if asked.shapes is not None:
+        raise click.UsageError("--shapes goes with a .glb; a page has the modes of its deformer")
+    found = opened(asked.performance, asked.file_fps)
+    face = make_face(asked.face, asked.deformer, look=asked.look, running=True)
+    PerformancePage.check()
+    page = PerformancePage(face.model, load_look(face.model, asked.look), basis_of(face, asked.deformer, tell))
+    with until_told() as ending:
+        _playing(face, found, asked.fps, ending)(page)
+    sound = found.sound()
+    content = page.content(sound).encode()
+    write_file(asked.output, content)
+    tell(f"{asked.output}: {len(content) / 1e6:.2f} MB, {page.frames} frames, opens in any browser")
+    return {"format": "html", "bytes": len(content), "frames": page.frames, "sound": sound is not None}
+
+
+def _playing(
+    face: Face, found: Opened, fps: float | None, ending: Ending
+) -> Callable[[SurfaceRecorder | PerformancePage], None]:
     from agentface.clock import FrameClock
     from agentface.io.gltf.face_glb import LONGEST
     from agentface.live.loop import run
@@ -143,7 +170,7 @@ def _playing(face: Face, found: Opened, fps: float | None, ending: Ending) -> Ca
     if frames > LONGEST:
         raise click.UsageError(f"expected at most {LONGEST} frames, got {frames}; choose a lower --fps")
 
-    def play(recorder: SurfaceRecorder) -> None:
+    def play(recorder: SurfaceRecorder | PerformancePage) -> None:
         with progress(found.path.name, length_s) as told:
             recorder.told = told
             run(
@@ -184,5 +211,5 @@ def _tell_figures(output: Path, figures: dict[str, Any]) -> None:
     tell(said)
 
 
-_KINDS: dict[str, Callable[[Asked], dict[str, Any]]] = {".glb": _glb, ".vrm": _vrm}
+_KINDS: dict[str, Callable[[Asked], dict[str, Any]]] = {".glb": _glb, ".vrm": _vrm, ".html": _html}
 """What writes a file, by its ending; it returns the figures of ``--json``."""
