@@ -12,6 +12,7 @@ import click
 
 from agentface.commands.ending import Ending, until_told
 from agentface.commands.film import Shot
+from agentface.commands.links import Links
 from agentface.commands.options import (
     address,
     camera_option,
@@ -21,11 +22,11 @@ from agentface.commands.options import (
     liveliness_option,
     look_option,
     make_face,
-    optional_address,
     size_option,
 )
+from agentface.commands.pages import PagesAsked, served_pages, web_options
 from agentface.commands.streams import say, tell
-from agentface.commands.vmc import VmcLinks, VmcOptions, check_vmc, vmc_links, vmc_options
+from agentface.commands.vmc import VmcOptions, check_vmc, vmc_links, vmc_options
 from agentface.resources import DEFAULT_FACE
 
 if TYPE_CHECKING:
@@ -33,9 +34,8 @@ if TYPE_CHECKING:
 
     from agentface.face import Face
     from agentface.io.osc.server import OscServer
-    from agentface.io.web.server import WebServer
+    from agentface.live.loop import Sink, Source
 
-_WEB = "Serve a page with the face, such as 127.0.0.1:8080; needs the extra web."
 _RECORD = "Film the face; a name like face-%05d.png gives numbered transparent pictures instead."
 
 
@@ -44,13 +44,7 @@ _RECORD = "Film the face; a name like face-%05d.png gives numbered transparent p
     "--osc", default="127.0.0.1:7400", callback=address, metavar="HOST:PORT", show_default=True, help="Where to listen."
 )
 @vmc_options
-@click.option("--web", callback=optional_address, metavar="HOST:PORT", help=_WEB)
-@click.option(
-    "--token", metavar="TOKEN", help="What --web asks of everyone; beyond this machine one is made if not given."
-)
-@click.option(
-    "--allow-origin", "origins", multiple=True, metavar="URL", help="A web site whose pages may ask --web, too."
-)
+@web_options
 @click.option("--view", type=click.Choice(["window", "none"]), default="none", show_default=True)
 @click.option("--record", type=click.Path(path_type=Path), metavar="FILE.mp4", help=_RECORD)
 @click.option(
@@ -82,9 +76,7 @@ def serve(
     *,
     osc: tuple[str, int],
     vmc: VmcOptions,
-    web: tuple[str, int] | None,
-    token: str | None,
-    origins: tuple[str, ...],
+    pages: PagesAsked | None,
     view: str,
     record: Path | None,
     every_frame: bool,
@@ -113,7 +105,7 @@ def serve(
         window=view == "window",
         record=record is not None,
         several=len(names) > 1,
-        web=web is not None,
+        web=pages is not None,
     )
     _check_ids(names, ids)
     check_vmc(given(ctx), vmc)
@@ -131,14 +123,14 @@ def serve(
         OscServer(faces if ids or len(made) > 1 else made[0], *osc) as server,
         vmc_links(name, faces[name], vmc) as links,
         _heard(faces),
-        _in_pages(faces, web, token, origins, deformer, look, rate) as pages,
+        served_pages(faces, pages, deformer, look, rate, links),
     ):
         if view == "window":
             _in_a_window(server, links, faces, ending, look, quality, camera)
             return
         end = duration or math.inf
         if record is None:
-            _run(server, links, faces, ending, rate, end, pages)
+            _run(server, links, faces, ending, rate, end)
             return
         shot = Shot(record, size, camera, quality or "fast", rate, look, live=True)
         if every_frame:
@@ -160,8 +152,6 @@ def _check_options(names: set[str], *, window: bool, record: bool, several: bool
         ("every_frame", "--record", record),
         ("size", "--record", record),
         ("look", "--view window, --record or --web", window or record or web),
-        ("web", "--view none", not window),
-        ("web", "no --record", not record),
         ("token", "--web", web),
         ("origins", "--web", web),
         ("quality", "--view window or --record", window or record),
@@ -211,7 +201,7 @@ def _heard(faces: Mapping[str, Face]) -> Iterator[None]:
         yield
 
 
-def _announce(faces: Mapping[str, Face], server: OscServer, links: VmcLinks) -> None:
+def _announce(faces: Mapping[str, Face], server: OscServer, links: Links) -> None:
     called = [name if name == face.model.name else f"{name} ({face.model.name})" for name, face in faces.items()]
     say(f"{' and '.join(called)} listen{'s' * (len(called) == 1)} to OSC on {server.host}:{server.port}")
     links.announce()
@@ -224,7 +214,7 @@ def _only(faces: Mapping[str, Face]) -> Face:
 
 def _in_a_window(
     server: OscServer,
-    links: VmcLinks,
+    links: Links,
     faces: Mapping[str, Face],
     ending: Ending,
     look: str | None,
@@ -238,50 +228,25 @@ def _in_a_window(
     window.run([server, *links.sources], links.sinks, stopped=ending.told)
 
 
-@contextmanager
-def _in_pages(
-    faces: Mapping[str, Face],
-    web: tuple[str, int] | None,
-    token: str | None,
-    origins: Sequence[str],
-    deformer: str,
-    look: str | None,
-    fps: float,
-) -> Iterator[list[WebServer]]:
-    """A server of pages, if one is asked for."""
-    if web is None:
-        yield []
-        return
-    from agentface.io.web.server import WebServer
-
-    with WebServer(
-        faces, *web, token=token, origins=origins, deformer=deformer, look=look, fps=fps, told=tell
-    ) as server:
-        for line in (f"the page is {server.url}", *server.access.told("it")):
-            say(line)
-        yield [server]
-
-
 def _run(
     server: OscServer,
-    links: VmcLinks,
+    links: Links,
     faces: Mapping[str, Face],
     ending: Ending,
     fps: float,
     duration: float,
-    pages: Sequence[WebServer],
 ) -> None:
     from agentface.clock import SystemClock
     from agentface.live.loop import run
 
     face, *beside = faces.values()
     _announce(faces, server, links)
-    sources, sinks = [server, *links.sources, *pages], [*links.sinks, *pages]
-    run(face, SystemClock(), sources, sinks, fps=fps, duration=duration, stopped=ending.told, beside=beside)
+    sources = [server, *links.sources]
+    run(face, SystemClock(), sources, links.sinks, fps=fps, duration=duration, stopped=ending.told, beside=beside)
 
 
 def _film_now(
-    server: OscServer, links: VmcLinks, faces: Mapping[str, Face], ending: Ending, shot: Shot, duration: float
+    server: OscServer, links: Links, faces: Mapping[str, Face], ending: Ending, shot: Shot, duration: float
 ) -> None:
     from agentface.clock import SystemClock
     from agentface.io.video import SOUND_HZ
@@ -292,7 +257,8 @@ def _film_now(
     face, last_s = _only(faces), duration if math.isfinite(duration) else None
     with LiveSound(face, SOUND_HZ) as sound, LiveSink(lambda: shot.open(face.model, last_s, sound)) as film:
         _announce(faces, server, links)
-        sources, sinks = [server, *links.sources], [sound, film, *links.sinks]
+        sources: list[Source] = [server, *links.sources]
+        sinks: list[Sink] = [sound, film, *links.sinks]
         frames = run(face, SystemClock(), sources, sinks, fps=shot.fps, duration=duration, stopped=ending.told)
     if film.dropped:
         lost = f"{film.dropped} of {frames} frames are left out, as this machine draws too slowly for them"
@@ -301,7 +267,7 @@ def _film_now(
 
 def _film_later(
     server: OscServer,
-    links: VmcLinks,
+    links: Links,
     faces: Mapping[str, Face],
     ending: Ending,
     shot: Shot,

@@ -51,13 +51,17 @@ def around(geometry, model):
     }
 
 
-@njit
+@njit(cache=True)
 def deepest(points, corners):
     """How far above or below it the surface of a closed mesh ``(T, 3, 3)`` is, of the point most inside; 0 for none."""
     most = 0.0
     low, high = np.empty(3), np.empty(3)
     for axis in range(3):
         low[axis], high[axis] = corners[:, :, axis].min(), corners[:, :, axis].max()
+    bounds = np.empty((4, corners.shape[0]))  # of each triangle as it is seen from above
+    for t in range(corners.shape[0]):
+        bounds[0, t], bounds[1, t] = corners[t, :, 0].min(), corners[t, :, 0].max()
+        bounds[2, t], bounds[3, t] = corners[t, :, 2].min(), corners[t, :, 2].max()
     for point in points:
         outside = False
         for axis in range(3):
@@ -67,6 +71,8 @@ def deepest(points, corners):
         x, y, z = point[0] + 1.3e-8, point[1], point[2] + 1.7e-8  # past the edges of triangles that it lies on
         winding, above, below = 0, 1.0, 1.0
         for t in range(corners.shape[0]):
+            if x < bounds[0, t] or x > bounds[1, t] or z < bounds[2, t] or z > bounds[3, t]:
+                continue
             a, b, c = corners[t, 0], corners[t, 1], corners[t, 2]
             u = (b[0] - x) * (c[2] - z) - (b[2] - z) * (c[0] - x)
             v = (c[0] - x) * (a[2] - z) - (c[2] - z) * (a[0] - x)

@@ -22,7 +22,7 @@ from agentface.io.web.audio import pieces, silence
 from agentface.io.web.guard import guarded
 from agentface.io.web.hub import Client, Hub
 from agentface.io.web.inbox import Inbox
-from agentface.io.web.stage import HeadEncoder, Measure, Stage, basis_of, encode_head_file
+from agentface.io.web.stage import HeadEncoder, Measure, FaceStage, basis_of, encode_head_file
 from agentface.live.loop import Frame
 from agentface.speech.sound import Sound
 
@@ -38,7 +38,8 @@ class WebServer:
     """Serves pages that show faces, from its making until ``close``; as a context manager, until the block ends.
 
     A source and a sink for :func:`agentface.live.loop.run`: it asks of the faces what pages ask, and gives pages their
-    frames. A program with a loop of its own calls ``take_in`` before each step and ``show`` after it.
+    frames. A program with a loop of its own calls ``take_in`` before each step, and ``show`` after it, or pages get each
+    frame a step later.
 
     Args:
         faces: a face, which is called by its own name, or at most eight by their ids.
@@ -77,14 +78,16 @@ class WebServer:
         self.access = Access.of(host, origins, token)
         self._clock = clock or SystemClock()
         self._stages = {
-            name: Stage(face, name, deformer=deformer, look=look, encode=encode, fps=fps, told=told, measure=measure)
+            name: FaceStage(
+                face, name, deformer=deformer, look=look, encode=encode, fps=fps, told=told, measure=measure
+            )
             for name, face in _by_id(faces).items()
         }
         self._hub, self._inbox = Hub(), Inbox()
         self._voices = {name: _Voice(stage.face, partial(self._tell, name)) for name, stage in self._stages.items()}
         self._socket = _listen(host, port)
         self.host, self.port = self._socket.getsockname()[:2]
-        self._frame = 0
+        self._frame, self._owed = 0, False
         self._loop: asyncio.AbstractEventLoop | None = None
         self._server = uvicorn.Server(self._config(uvicorn))
         self._thread = threading.Thread(target=self._serve, name="agentface-web", daemon=True)
@@ -103,18 +106,28 @@ class WebServer:
         return f"http://{host}:{self.port}/{query}"
 
     def take_in(self, time_s: float = 0.0) -> None:
-        """Do what pages have asked since the last call; the step that follows begins at ``time_s``."""
+        """Do what pages have asked since the last call; the step that follows begins at ``time_s``.
+
+        Where the server is no sink, pages get the frame of the step before.
+        """
+        if self._owed:
+            self._send(time_s)
+        self._owed = True
         for voice in self._voices.values():
             voice.now_s = time_s
         self._inbox.take_in()
 
     def show(self, frame: Frame) -> None:
         """Give pages the faces as the last step left them."""
+        self._owed = False
+        self._send(frame.time_s)
+
+    def _send(self, time_s: float) -> None:
         self._frame += 1
         for name, modes in self._hub.wanted.items():
             stage = self._stages[name]
             for mode in modes:
-                message = stage.writer.write(mode, self._frame, frame.time_s, stage.face.geometry)
+                message = stage.writer.write(mode, self._frame, time_s, stage.face.geometry)
                 self._call(self._hub.show, name, mode, self._frame, message)
 
     def close(self) -> None:
@@ -137,11 +150,11 @@ class WebServer:
         self.close()
 
     def _config(self, uvicorn: Any) -> Any:
-        from agentface.io.web.app import LARGEST_MESSAGE, OPEN_PATHS, WebFaces
+        from agentface.io.web.app import LARGEST_MESSAGE, WebFaces, open_paths
 
         faces = WebFaces(self._stages, self._hub, self._inbox, self._clock)
         faces.joined = self._catch_up
-        app = guarded(faces.app(), self.access, open_paths=OPEN_PATHS, clock=self._clock)
+        app = guarded(faces.app(), self.access, open_paths=open_paths(), clock=self._clock)
         return uvicorn.Config(
             app,
             log_config=None,
