@@ -105,7 +105,8 @@ def _glb(asked: Asked) -> dict[str, Any]:
         played = None if found is None else _playing(face, found, asked.fps, ending)
         if shapes == "arkit":
             with progress("shapes", _SHAPES) as told:
-                file = made.with_arkit(played, told)
+                made.bake(told)
+            file = made.with_arkit(played)
         else:
             assert played is not None, "checked above"  # noqa: S101 - for the type checker
             file = made.with_modes(played, asked.error_mm)
@@ -190,14 +191,15 @@ def _playing(
 
 
 def _write_sound(found: Opened, output: Path) -> str | None:
-    """The sound of a performance, beside the file; returns its path."""
+    """The sound of a performance, beside the file, where it is not there itself; returns its path."""
     from agentface.io.sound import write_wav
 
     sound = found.sound()
     if sound is None:
         return None
-    path = output.with_suffix(".wav")
-    write_wav(path, sound)
+    path, own = output.with_suffix(".wav"), getattr(found.recording, "sound", None)
+    if own is None or not path.exists() or not path.samefile(found.path.parent / own):
+        write_wav(path, sound)
     return str(path)
 
 

@@ -15,7 +15,7 @@ from agentface.head.arkit import ARKIT_SHAPES
 from agentface.head.look import Look
 from agentface.head.model import HeadModel
 from agentface.head.provenance import read_provenance
-from agentface.io.gltf.arkit_shapes import ShapeWeights, bake_arkit
+from agentface.io.gltf.arkit_shapes import Shapes, ShapeWeights, bake_arkit
 from agentface.io.gltf.face_parts import FacePart, face_parts
 from agentface.io.gltf.figure import Figure, Joints, add_joints, eyes_of
 from agentface.io.gltf.materials import add_materials
@@ -62,13 +62,21 @@ class FaceGlb:
         self.model, self.look, self._deformer = model, look, deformer
         self.parts = face_parts(model, look)
         self.surface = Surface(model, self.parts)
+        self._shapes: tuple[Shapes, Doubles] | None = None
 
-    def with_arkit(self, played: Played | None = None, told: Callable[[float], object] = lambda _: None) -> GlbFace:
+    def bake(self, told: Callable[[float], object] = lambda _: None) -> None:
+        """Bake ARKit's shapes, which :meth:`with_arkit` needs; ``told`` gets the number that are done."""
+        if self._shapes is None:
+            self._shapes = bake_arkit(self.model, self._deformer, self.surface, told)
+
+    def with_arkit(self, played: Played | None = None) -> GlbFace:
         """The face with ARKit's shapes, and with what ``played`` plays as nearly as these show it.
 
-        ``told`` gets how many of the 52 shapes are baked. Raises GraphicsError when there is no OpenGL.
+        Raises GraphicsError when there is no OpenGL.
         """
-        shapes, rows = bake_arkit(self.model, self._deformer, self.surface, told)
+        self.bake()
+        assert self._shapes is not None, "baked above"  # noqa: S101 - for the type checker
+        shapes, rows = self._shapes
         if played is None:
             return self._file(_Shaped(ARKIT_SHAPES, shapes, None, {}), None)
         fitting = ShapeWeights(rows)
