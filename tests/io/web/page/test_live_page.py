@@ -69,8 +69,9 @@ def test_what_is_drawn_is_confirmed(tab, served, record_property):
 
 
 def test_a_transparent_page_has_nothing_behind_the_face(tab, served):
-    tab.goto(f"{served.server.url}?transparent")
+    tab.goto(f"{served.server.url}?transparent&onclick=fetch('/')&server=http://127.0.0.1:1")
     tab.wait_for_function(DRAWN)
+    assert tab.evaluate(f"{ELEMENT}.getAttributeNames()") == ["transparent"]
     tab.wait_for_timeout(500)
     picture = np.asarray(Image.open(io.BytesIO(tab.screenshot(omit_background=True))).convert("RGBA"))
     assert (picture[:10, :10] == 0).all()
