@@ -59,6 +59,13 @@ def test_a_page_asks_and_is_answered(tab, served):
     tab.evaluate(f"{ELEMENT}.request('neutral', 0)")
 
 
+def test_an_element_that_is_moved_shows_its_face_again(tab, served):
+    tab.goto(served.server.url)
+    tab.wait_for_function(DRAWN)
+    before = tab.evaluate(f"() => {{ const face = {ELEMENT}; document.body.append(face); return face.drawn; }}")
+    tab.wait_for_function(f"{ELEMENT}.face && {ELEMENT}.drawn > {before} + 1")
+
+
 def test_what_is_drawn_is_confirmed(tab, served, record_property):
     tab.goto(served.server.url)
     tab.wait_for_function(DRAWN)
