@@ -13,7 +13,7 @@ import pytest
 from agentface.head.look import load_look, look_names
 from agentface.io.web.basis import Basis
 from agentface.io.web.head_file import EXTENSION, encode_head
-from agentface.io.web.modes import Modes
+from agentface.io.web.modes import ModeSet
 from agentface.view.portrait import portrait
 from tests import tools
 from tests.npm import node_modules
@@ -30,7 +30,7 @@ validateBytes(content).then(({ issues }) => console.log(JSON.stringify(issues)))
 def small_basis(model):
     rng = np.random.default_rng(3)
     skin, tongue = (
-        Modes(rng.integers(-32767, 32767, (2, count, 3)).astype(np.int16), np.array([1e-6, 2e-7], np.float32))
+        ModeSet(rng.integers(-32767, 32767, (2, count, 3)).astype(np.int16), np.array([1e-6, 2e-7], np.float32))
         for count in (len(model.vertices), len(model.parts["tongue"].attributes["POSITION"]))
     )
     return Basis(skin, tongue)
