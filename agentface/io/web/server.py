@@ -22,7 +22,7 @@ from agentface.io.web.audio import pieces, silence
 from agentface.io.web.guard import guarded
 from agentface.io.web.hub import Client, Hub
 from agentface.io.web.inbox import Inbox
-from agentface.io.web.stage import HeadEncoder, Measure, FaceStage, basis_of, encode_head_file
+from agentface.io.web.stage import FaceStage, HeadEncoder, Measure, basis_of, encode_head_file
 from agentface.live.loop import Frame
 from agentface.speech.sound import Sound
 
