@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from agentface.conventions import Doubles, Floats
+from agentface.deform.geometry import FaceGeometry
 from agentface.deform.protocol import Deformer
 from agentface.errors import InvalidValueError
 from agentface.head.arkit import ARKIT_SHAPES
@@ -21,7 +22,7 @@ from agentface.io.gltf.figure import Figure, Joints, add_joints, eyes_of
 from agentface.io.gltf.materials import add_materials
 from agentface.io.gltf.modes import ModeFinder
 from agentface.io.gltf.recorder import SurfaceRecorder
-from agentface.io.gltf.surface import Surface
+from agentface.io.gltf.surface import SOFT, Surface
 from agentface.io.gltf.writer import GltfWriter, NodeTrack, Target, quaternions
 
 ERROR_MM, MOST_MODES = 0.1, 128
@@ -62,6 +63,7 @@ class FaceGlb:
         self.model, self.look, self._deformer = model, look, deformer
         self.parts = face_parts(model, look)
         self.surface = Surface(model, self.parts)
+        self._rest = FaceGeometry.at_rest(model)
         self._shapes: tuple[Shapes, Doubles] | None = None
 
     def bake(self, told: Callable[[float], object] = lambda _: None) -> None:
@@ -112,8 +114,10 @@ class FaceGlb:
         materials = add_materials(writer, self.model, self.look, self.parts)
         tracks = []
         for part in self.parts:
-            own = [name for name in shaped.order if part.name in shaped.targets[name]]
-            targets = {name: shaped.targets[name][part.name] for name in own}
+            still = Target(np.zeros((len(part.at(self._rest)[0]), 3), np.float32))
+            # who looks for a shape looks on the skin, which has those that move nothing of it, too
+            own = [name for name in shaped.order if part.name in shaped.targets[name] or part.name == SOFT[0]]
+            targets = {name: shaped.targets[name].get(part.name, still) for name in own}
             node = figure.add(part, materials[part.material], targets)
             if shaped.weights is not None and own:
                 columns = [shaped.order.index(name) for name in own]
@@ -144,15 +148,15 @@ class FaceGlb:
             "face": self.model.name,
             "bytes": len(content),
             "shapes": list(shaped.order),
-            "meshes": {part.name: part_figures(part) for part in self.parts},
+            "meshes": part_figures(self.model, self.parts),
             **moving,
         }
 
 
-def part_figures(part: FacePart) -> dict[str, int]:
-    """The counts of a part's vertices and triangles."""
-    count = int(part.triangles.max()) + 1
-    return {"vertices": count, "triangles": len(part.triangles)}
+def part_figures(model: HeadModel, parts: Sequence[FacePart]) -> dict[str, dict[str, int]]:
+    """The counts of vertices and triangles by part."""
+    rest = FaceGeometry.at_rest(model)
+    return {part.name: {"vertices": len(part.at(rest)[0]), "triangles": len(part.triangles)} for part in parts}
 
 
 def _forward(centre: Doubles, thrust: Floats) -> Floats:

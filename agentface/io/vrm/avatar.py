@@ -67,7 +67,7 @@ def encode_avatar(model: HeadModel, look: Look, deformer: Deformer, told: Told =
         "overrides": {name: list(one.overrides) for name, one in expressions.items() if one.overrides},
         "bones": list(bones),
         "licences": list(provenance.licences),
-        "meshes": {part.name: part_figures(part) for part in parts},
+        "meshes": part_figures(model, parts),
     }
     return GlbFace(content, figures)
 
