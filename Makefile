@@ -18,7 +18,8 @@ debian = if [ "$$(id -u)" = 0 ] && command -v apt-get >/dev/null; \
 TOOLS := xvfb-run:xvfb xauth:xauth xdotool:xdotool xprop:x11-utils oscsend:liblo-tools oscdump:liblo-tools node:nodejs npm:npm flite:flite chromium:chromium
 LIBRARIES := libespeak-ng.so.1:libespeak-ng1
 # what only the tests that take minutes need
-soak: TOOLS += blender:blender
+SOAK_TOOLS := blender:blender
+soak: TOOLS += $(SOAK_TOOLS)
 
 .DEFAULT_GOAL := help
 # the page of agentface/io/web: what npm brings and makes of it is not in the repository
@@ -76,7 +77,7 @@ $(FRAMEWORKS)/.installed: pyproject.toml
 	$(PYTHON) -m venv $(FRAMEWORKS)
 	$(FRAMEWORKS)/bin/python -m pip install --quiet --upgrade 'pip>=25.1'
 	$(FRAMEWORKS)/bin/python -m pip install --quiet --editable '.[pipecat,livekit]' --group test
-	$(FRAMEWORKS)/bin/python -m pip install --quiet --no-deps 'aiavatar>=0.9'
+	$(FRAMEWORKS)/bin/python -m pip install --quiet --no-deps 'aiavatar>=0.9.2'
 	@touch $@
 
 # what warnings the frameworks give is their own affair

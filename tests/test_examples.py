@@ -46,6 +46,22 @@ def test_moods(tmp_path):
     assert frames(tmp_path / "moods.mp4") == pytest.approx([frame / 30 for frame in range(15)], abs=1e-4)
 
 
+def test_a_speaker_is_filmed_with_all_of_its_sound(tmp_path):
+    pytest.importorskip("pocketsphinx")
+    said = run("speaker.py", EXAMPLES / "hello.wav", tmp_path / "speaker.mp4", "--size", 96)
+    times = frames(tmp_path / "speaker.mp4")
+    assert times == pytest.approx([frame / 25 for frame in range(len(times))], abs=1e-4)
+    assert f"{len(times)} frames, 4.57 s of sound" in said
+
+
+def test_a_program_uses_the_tools_of_a_face(tmp_path):
+    pytest.importorskip("mcp")
+    said = run("mcp_agent.py", "--view", "none", "--picture", tmp_path / "seen.png")
+    assert size_of(tmp_path / "seen.png") == (512, 512)
+    assert "'happiness': 0.8" in said
+    assert "expected the name of one gesture, got 'wave'" in said
+
+
 def test_make_demo_films_an_agent_in_another_process(tmp_path):
     said = run("make_demo.py", "--out", tmp_path, "--pace", 12, "--mute")
     assert size_of(tmp_path / "expressions.png") == (1920, 1072)

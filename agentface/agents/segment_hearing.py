@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import zip_longest
+from operator import attrgetter
 
 from agentface.agents.sound_segment import SoundSegment
+from agentface.agents.word_fit import fitted, with_end
 from agentface.errors import AgentFaceError
 from agentface.io.resampler import Resampler
 from agentface.speech.live_hearing import LiveHearing
@@ -66,10 +69,14 @@ class SegmentHearing:
         return self._with_words(heard, segment)
 
     def _with_words(self, heard: Sequence[Phone], segment: SoundSegment) -> tuple[Phone, ...]:
-        """Words, and what is heard where there are none."""
+        """Words, timed inside by what is heard, and what is heard where there are none."""
         now = segment.given / self._rate_hz
-        near = [word for word in segment.words if now - _LONG_AGO_S <= word.start_s <= now + _MOST_AHEAD_S]
-        told = phones_of_words(near, self._lookup)
+        first, last = now - _LONG_AGO_S, now + _MOST_AHEAD_S
+        near = sorted((word for word in segment.words if first <= word.start_s <= last), key=attrgetter("start_s"))
+        told: list[Phone] = []
+        for word, after in zip_longest(near, near[1:]):
+            phones = phones_of_words([with_end(word, after, heard)], self._lookup)
+            told += fitted(phones, heard) if phones else ()
         if not told:
             return tuple(heard)
         alone = [

@@ -9,7 +9,7 @@ from typing import Self
 import numpy as np
 
 from agentface.agents.drawing import Drawing, Painter
-from agentface.agents.mouth import Mouth
+from agentface.agents.live_mouth import LiveMouth
 from agentface.agents.pace import Pace
 from agentface.agents.pieces import Piece, SegmentEnd, SoundPiece, VideoFrame
 from agentface.agents.segment_hearing import SegmentHearing
@@ -82,7 +82,7 @@ class Speaker:
         self.rate_hz = self._line.rate_hz
         self._clock, self._pronounce = clock or SystemClock(), pronounce
         self._queue = SegmentQueue(self.rate_hz)
-        self._mouth, self._painter = Mouth(face), Painter(face.model, look)
+        self._mouth, self._painter = LiveMouth(face), Painter(face.model, look)
         self._hearing: SegmentHearing | None = None
         self._followed: SoundSegment | None = None
         self._pace, self._slot = Pace(self._clock, self.fps), -1

@@ -18,8 +18,8 @@ from agentface.commands.streams import tell
 
 if TYPE_CHECKING:
     from agentface.face import Face
-    from agentface.head.look import Look
     from agentface.io.gltf.recorder import SurfaceRecorder
+    from agentface.io.web.performance_page import PerformancePage
 
 
 _SHAPES, _EXPRESSIONS = 52, 18 + 52
@@ -68,12 +68,13 @@ class Asked:
 @json_option
 @face_options
 def export(*, json_file: str | None, **options: Any) -> None:
-    """Write a face for other programs: .glb for anything that draws in three dimensions, .vrm for avatars.
+    """Write a face for other programs: .glb for anything that draws, .vrm for avatars, .html for browsers.
 
     \b
     agentface export amber.glb                               # with ARKit's 52 shapes
     agentface export smile.glb --performance smile.fap       # what the face does, to 0.1 mm
     agentface export onyx.vrm --face onyx                    # VRM 1.0: expressions, visemes, look-at
+    agentface export hello.html --performance hello.bml      # plays in any browser, with its sound, without a network
     """  # noqa: D301 - \b is click's mark of lines to keep
     from agentface.io.files import check_writable
 
@@ -90,6 +91,7 @@ def export(*, json_file: str | None, **options: Any) -> None:
 
 def _glb(asked: Asked) -> dict[str, Any]:
     from agentface.deform.protocol import make_deformer
+    from agentface.head.look import load_look
     from agentface.io.files import write_file
     from agentface.io.gltf.face_glb import FaceGlb
 
@@ -98,12 +100,13 @@ def _glb(asked: Asked) -> dict[str, Any]:
         raise click.UsageError("--shapes exact goes with --performance FILE, whose shapes they are")
     found = None if asked.performance is None else opened(asked.performance, asked.file_fps)
     face = make_face(asked.face, asked.deformer, look=asked.look, running=True)
-    made = FaceGlb(face.model, _look(face, asked.look), make_deformer(asked.deformer, face.model))
+    made = FaceGlb(face.model, load_look(face.model, asked.look), make_deformer(asked.deformer, face.model))
     with until_told() as ending:
         played = None if found is None else _playing(face, found, asked.fps, ending)
         if shapes == "arkit":
             with progress("shapes", _SHAPES) as told:
-                file = made.with_arkit(played, told)
+                made.bake(told)
+            file = made.with_arkit(played)
         else:
             assert played is not None, "checked above"  # noqa: S101 - for the type checker
             file = made.with_modes(played, asked.error_mm)
@@ -115,21 +118,49 @@ def _glb(asked: Asked) -> dict[str, Any]:
 
 def _vrm(asked: Asked) -> dict[str, Any]:
     from agentface.deform.protocol import make_deformer
+    from agentface.head.look import load_look
+    from agentface.head.model import load_model
     from agentface.io.files import write_file
     from agentface.io.vrm.avatar import encode_avatar
 
     for name, given in (("--performance", asked.performance), ("--shapes", asked.shapes)):
         if given is not None:
             raise click.UsageError(f"{name} goes with a .glb; an avatar has its own expressions, and no animation")
-    face = make_face(asked.face, asked.deformer, look=asked.look, running=True)
+    model = load_model(asked.face)
+    look, deformer = load_look(model, asked.look), make_deformer(asked.deformer, model)
     with progress("expressions", _EXPRESSIONS) as told:
-        made = encode_avatar(face, _look(face, asked.look), make_deformer(asked.deformer, face.model), told)
+        made = encode_avatar(model, look, deformer, told)
     write_file(asked.output, made.content)
     _tell_figures(asked.output, made.figures)
     return {"format": "vrm", **made.figures}
 
 
-def _playing(face: Face, found: Opened, fps: float | None, ending: Ending) -> Callable[[SurfaceRecorder], None]:
+def _html(asked: Asked) -> dict[str, Any]:
+    from agentface.head.look import load_look
+    from agentface.io.files import write_file
+    from agentface.io.web.performance_page import PerformancePage
+    from agentface.io.web.stage import basis_of
+
+    if asked.performance is None:
+        raise click.UsageError("a .html plays a performance: --performance FILE says which")
+    if asked.shapes is not None:
+        raise click.UsageError("--shapes goes with a .glb; a page has the modes of its deformer")
+    found = opened(asked.performance, asked.file_fps)
+    face = make_face(asked.face, asked.deformer, look=asked.look, running=True)
+    PerformancePage.check()
+    page = PerformancePage(face.model, load_look(face.model, asked.look), basis_of(face, asked.deformer, tell))
+    with until_told() as ending:
+        _playing(face, found, asked.fps, ending)(page)
+    sound = found.sound()
+    content = page.content(sound).encode()
+    write_file(asked.output, content)
+    tell(f"{asked.output}: {len(content) / 1e6:.2f} MB, {page.frames} frames, opens in any browser")
+    return {"format": "html", "bytes": len(content), "frames": page.frames, "sound": sound is not None}
+
+
+def _playing(
+    face: Face, found: Opened, fps: float | None, ending: Ending
+) -> Callable[[SurfaceRecorder | PerformancePage], None]:
     from agentface.clock import FrameClock
     from agentface.io.gltf.face_glb import LONGEST
     from agentface.live.loop import run
@@ -140,7 +171,7 @@ def _playing(face: Face, found: Opened, fps: float | None, ending: Ending) -> Ca
     if frames > LONGEST:
         raise click.UsageError(f"expected at most {LONGEST} frames, got {frames}; choose a lower --fps")
 
-    def play(recorder: SurfaceRecorder) -> None:
+    def play(recorder: SurfaceRecorder | PerformancePage) -> None:
         with progress(found.path.name, length_s) as told:
             recorder.told = told
             run(
@@ -159,21 +190,16 @@ def _playing(face: Face, found: Opened, fps: float | None, ending: Ending) -> Ca
     return play
 
 
-def _look(face: Face, look: str | None) -> Look:
-    from agentface.head.look import load_look
-
-    return load_look(face.model, look)
-
-
 def _write_sound(found: Opened, output: Path) -> str | None:
-    """The sound of a performance, beside the file; returns its path."""
+    """The sound of a performance, beside the file, where it is not there itself; returns its path."""
     from agentface.io.sound import write_wav
 
     sound = found.sound()
     if sound is None:
         return None
-    path = output.with_suffix(".wav")
-    write_wav(path, sound)
+    path, own = output.with_suffix(".wav"), getattr(found.recording, "sound", None)
+    if own is None or not path.exists() or not path.samefile(found.path.parent / own):
+        write_wav(path, sound)
     return str(path)
 
 
@@ -187,5 +213,5 @@ def _tell_figures(output: Path, figures: dict[str, Any]) -> None:
     tell(said)
 
 
-_KINDS: dict[str, Callable[[Asked], dict[str, Any]]] = {".glb": _glb, ".vrm": _vrm}
+_KINDS: dict[str, Callable[[Asked], dict[str, Any]]] = {".glb": _glb, ".vrm": _vrm, ".html": _html}
 """What writes a file, by its ending; it returns the figures of ``--json``."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from contextlib import ExitStack, contextmanager
+from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -12,6 +13,7 @@ import click
 
 from agentface.commands.ending import Ending, until_told
 from agentface.commands.film import Shot
+from agentface.commands.links import Links
 from agentface.commands.options import (
     address,
     camera_option,
@@ -21,11 +23,11 @@ from agentface.commands.options import (
     liveliness_option,
     look_option,
     make_face,
-    optional_address,
     size_option,
 )
+from agentface.commands.pages import PagesAsked, served_pages, web_options
 from agentface.commands.streams import say, tell
-from agentface.commands.vmc import VmcLinks, VmcOptions, check_vmc, vmc_links, vmc_options
+from agentface.commands.vmc import VmcOptions, check_vmc, vmc_links, vmc_options
 from agentface.resources import DEFAULT_FACE
 
 if TYPE_CHECKING:
@@ -36,7 +38,6 @@ if TYPE_CHECKING:
     from agentface.io.web.server import WebServer
     from agentface.live.loop import Sink, Source
 
-_WEB = "Serve a page with the face, such as 127.0.0.1:8080; needs the extra web."
 _RECORD = "Film the face; a name like face-%05d.png gives numbered transparent pictures instead."
 
 
@@ -45,13 +46,7 @@ _RECORD = "Film the face; a name like face-%05d.png gives numbered transparent p
     "--osc", default="127.0.0.1:7400", callback=address, metavar="HOST:PORT", show_default=True, help="Where to listen."
 )
 @vmc_options
-@click.option("--web", callback=optional_address, metavar="HOST:PORT", help=_WEB)
-@click.option(
-    "--token", metavar="TOKEN", help="What --web asks of everyone; beyond this machine one is made if not given."
-)
-@click.option(
-    "--allow-origin", "origins", multiple=True, metavar="URL", help="A web site whose pages may ask --web, too."
-)
+@web_options
 @click.option("--view", type=click.Choice(["window", "none"]), default="none", show_default=True)
 @click.option("--record", type=click.Path(path_type=Path), metavar="FILE.mp4", help=_RECORD)
 @click.option(
@@ -83,9 +78,7 @@ def serve(
     *,
     osc: tuple[str, int],
     vmc: VmcOptions,
-    web: tuple[str, int] | None,
-    token: str | None,
-    origins: tuple[str, ...],
+    pages: PagesAsked | None,
     view: str,
     record: Path | None,
     every_frame: bool,
@@ -109,33 +102,57 @@ def serve(
     agentface serve --face amber --id left --face onyx --id right
     agentface serve --vmc 127.0.0.1:39539 --vmc-in 127.0.0.1:39540
     """  # noqa: D301 - \b is click's mark of lines to keep
-    window, several = view == "window", len(names) > 1
-    _check_options(given(ctx), window=window, record=record is not None, several=several, web=web is not None)
+    _check_options(given(ctx), window=view == "window", record=bool(record), several=len(names) > 1, web=bool(pages))
     _check_ids(names, ids)
     check_vmc(given(ctx), vmc)
     from agentface.io.osc.server import OscServer
 
-    faces = vmc.first(_made(names, ids, deformer, look, liveliness))
-    name, rate, end = next(iter(faces)), fps or (30.0 if record else 60.0), duration or math.inf
-    with (
-        until_told() as ending,
-        OscServer(faces if ids or several else faces[name], *osc) as server,
-        vmc_links(name, faces[name], vmc) as links,
-        _heard(faces),
-        _in_pages(faces, web, token, origins, deformer, look, rate) as pages,
-    ):
-        if window:
-            _in_a_window(server, links, faces, ending, look, quality, camera)
-            return
-        if record is None:
-            _run(server, links, faces, ending, rate, end, pages)
-            return
-        shot = Shot(record, size, camera, quality or "fast", rate, look, live=True)
-        if every_frame:
-            again = make_face(names[0], deformer, look=look, liveliness=liveliness)
-            _film_later(server, links, faces, ending, shot, end, again)
+    made = [
+        make_face(name, deformer, look=look, running=True, liveliness=liveliness, seed=seed)
+        for seed, name in enumerate(names)
+    ]
+    faces = vmc.first(_by_id(made, ids))
+    name = next(iter(faces))
+    rate = fps or (30.0 if record else 60.0)
+    with until_told() as ending, _heard(faces), ExitStack() as stack:
+        ways = _Ways(
+            stack.enter_context(OscServer(faces if ids or len(made) > 1 else made[0], *osc)),
+            stack.enter_context(vmc_links(name, faces[name], vmc)),
+            stack.enter_context(served_pages(faces, pages, deformer, look, rate)),
+        )
+        end = duration or math.inf
+        if view == "window":
+            _in_a_window(ways, faces, ending, look, quality, camera)
+        elif record is None:
+            _run(ways, faces, ending, rate, end)
         else:
-            _film_now(server, links, faces, ending, shot, end)
+            shot = Shot(record, size, camera, quality or "fast", rate, look, live=True)
+            again = make_face(names[0], deformer, look=look, liveliness=liveliness) if every_frame else None
+            _film(ways, faces, ending, shot, end, again)
+
+
+def _film(ways: _Ways, faces: Mapping[str, Face], ending: Ending, shot: Shot, end: float, again: Face | None) -> None:
+    if again is None:
+        _film_now(ways, faces, ending, shot, end)
+    else:
+        _film_later(ways, faces, ending, shot, end, again)
+
+
+@dataclass(frozen=True)
+class _Ways:
+    """How a face is reached, and where its frames go beside what is drawn."""
+
+    osc: OscServer
+    vmc: Links
+    pages: Sequence[WebServer]
+
+    @property
+    def sources(self) -> list[Source]:
+        return [self.osc, *self.vmc.sources, *self.pages]
+
+    @property
+    def sinks(self) -> list[Sink]:
+        return [*self.vmc.sinks, *self.pages]
 
 
 def _check_options(names: set[str], *, window: bool, record: bool, several: bool, web: bool) -> None:
@@ -150,8 +167,6 @@ def _check_options(names: set[str], *, window: bool, record: bool, several: bool
         ("every_frame", "--record", record),
         ("size", "--record", record),
         ("look", "--view window, --record or --web", window or record or web),
-        ("web", "--view none", not window),
-        ("web", "no --record", not record),
         ("token", "--web", web),
         ("origins", "--web", web),
         ("quality", "--view window or --record", window or record),
@@ -180,17 +195,6 @@ def _check_apart(ids: Sequence[str]) -> None:
         raise click.UsageError(f"expected each id once, got {twice!r} twice; give each --face an --id of its own")
 
 
-def _made(
-    names: Sequence[str], ids: Sequence[str], deformer: str, look: str | None, liveliness: float
-) -> dict[str, Face]:
-    """The faces by their ids."""
-    made = [
-        make_face(name, deformer, look=look, running=True, liveliness=liveliness, seed=seed)
-        for seed, name in enumerate(names)
-    ]
-    return _by_id(made, ids)
-
-
 def _by_id(faces: Sequence[Face], ids: Sequence[str]) -> dict[str, Face]:
     names = ids or [face.model.name for face in faces]
     _check_apart(names)
@@ -212,10 +216,10 @@ def _heard(faces: Mapping[str, Face]) -> Iterator[None]:
         yield
 
 
-def _announce(faces: Mapping[str, Face], server: OscServer, links: VmcLinks) -> None:
+def _announce(faces: Mapping[str, Face], ways: _Ways) -> None:
     called = [name if name == face.model.name else f"{name} ({face.model.name})" for name, face in faces.items()]
-    say(f"{' and '.join(called)} listen{'s' * (len(called) == 1)} to OSC on {server.host}:{server.port}")
-    links.announce()
+    say(f"{' and '.join(called)} listen{'s' * (len(called) == 1)} to OSC on {ways.osc.host}:{ways.osc.port}")
+    ways.vmc.announce()
 
 
 def _only(faces: Mapping[str, Face]) -> Face:
@@ -224,8 +228,7 @@ def _only(faces: Mapping[str, Face]) -> Face:
 
 
 def _in_a_window(
-    server: OscServer,
-    links: VmcLinks,
+    ways: _Ways,
     faces: Mapping[str, Face],
     ending: Ending,
     look: str | None,
@@ -235,55 +238,27 @@ def _in_a_window(
     from agentface.commands.show import make_window
 
     window = make_window(_only(faces), look=look, quality=quality, camera=camera)
-    _announce(faces, server, links)
-    window.run([server, *links.sources], links.sinks, stopped=ending.told)
-
-
-@contextmanager
-def _in_pages(
-    faces: Mapping[str, Face],
-    web: tuple[str, int] | None,
-    token: str | None,
-    origins: Sequence[str],
-    deformer: str,
-    look: str | None,
-    fps: float,
-) -> Iterator[list[WebServer]]:
-    """A server of pages, if one is asked for."""
-    if web is None:
-        yield []
-        return
-    from agentface.io.web.server import WebServer
-
-    with WebServer(
-        faces, *web, token=token, origins=origins, deformer=deformer, look=look, fps=fps, told=tell
-    ) as server:
-        for line in (f"the page is {server.url}", *server.access.told("it")):
-            say(line)
-        yield [server]
+    _announce(faces, ways)
+    window.run(ways.sources, ways.sinks, stopped=ending.told)
 
 
 def _run(
-    server: OscServer,
-    links: VmcLinks,
+    ways: _Ways,
     faces: Mapping[str, Face],
     ending: Ending,
     fps: float,
     duration: float,
-    pages: Sequence[WebServer],
 ) -> None:
     from agentface.clock import SystemClock
     from agentface.live.loop import run
 
     face, *beside = faces.values()
-    _announce(faces, server, links)
-    sources, sinks = [server, *links.sources, *pages], [*links.sinks, *pages]
-    run(face, SystemClock(), sources, sinks, fps=fps, duration=duration, stopped=ending.told, beside=beside)
+    _announce(faces, ways)
+    clock, end = SystemClock(), ending.told
+    run(face, clock, ways.sources, ways.sinks, fps=fps, duration=duration, stopped=end, beside=beside)
 
 
-def _film_now(
-    server: OscServer, links: VmcLinks, faces: Mapping[str, Face], ending: Ending, shot: Shot, duration: float
-) -> None:
+def _film_now(ways: _Ways, faces: Mapping[str, Face], ending: Ending, shot: Shot, duration: float) -> None:
     from agentface.clock import SystemClock
     from agentface.io.video import SOUND_HZ
     from agentface.live.heard import LiveSound
@@ -292,18 +267,16 @@ def _film_now(
 
     face, last_s = _only(faces), duration if math.isfinite(duration) else None
     with LiveSound(face, SOUND_HZ) as sound, LiveSink(lambda: shot.open(face.model, last_s, sound)) as film:
-        _announce(faces, server, links)
-        sources: list[Source] = [server, *links.sources]
-        sinks: list[Sink] = [sound, film, *links.sinks]
-        frames = run(face, SystemClock(), sources, sinks, fps=shot.fps, duration=duration, stopped=ending.told)
+        _announce(faces, ways)
+        sinks: list[Sink] = [sound, film, *ways.sinks]
+        frames = run(face, SystemClock(), ways.sources, sinks, fps=shot.fps, duration=duration, stopped=ending.told)
     if film.dropped:
         lost = f"{film.dropped} of {frames} frames are left out, as this machine draws too slowly for them"
         tell(f"{shot.path}: {lost}; --every-frame films all of them")
 
 
 def _film_later(
-    server: OscServer,
-    links: VmcLinks,
+    ways: _Ways,
     faces: Mapping[str, Face],
     ending: Ending,
     shot: Shot,
@@ -323,10 +296,10 @@ def _film_later(
     face = _only(faces)
     with shot.open(face.model):
         pass  # what cannot be written or drawn is told before the recording
-    _announce(faces, server, links)
+    _announce(faces, ways)
     with Recorder(face) as recorder, HeardRecorder(face, recorder, shot.fps) as heard:
-        sources, sinks = [server, *links.sources], [recorder, *links.sinks]
-        run(face, SystemClock(), sources, sinks, fps=shot.fps, duration=duration, stopped=ending.told)
+        sinks: list[Sink] = [recorder, *ways.sinks]
+        run(face, SystemClock(), ways.sources, sinks, fps=shot.fps, duration=duration, stopped=ending.told)
     if recorder.last_s is None:
         return
     ending.go_on()  # told to stop again, it keeps what is drawn

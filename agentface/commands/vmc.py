@@ -4,18 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import ExitStack, contextmanager, nullcontext
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import wraps
 from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
+from agentface.commands.links import Links
 from agentface.commands.options import optional_address, wait_told
-from agentface.commands.streams import say
 
 if TYPE_CHECKING:
     from agentface.face import Face
-    from agentface.live.loop import Sink, Source
 
 _Command = TypeVar("_Command", bound=Callable[..., Any])
 _NAMES = ["vrm0", "vrm1", "perfect-sync", "arkit"]
@@ -103,20 +102,6 @@ class VmcOptions:
         return {self.id: faces[self.id], **faces}
 
 
-@dataclass(slots=True)
-class VmcLinks:
-    """What the loop asks and shows for VMC, and what is said about it at the start."""
-
-    sources: list[Source] = field(default_factory=list)
-    sinks: list[Sink] = field(default_factory=list)
-    told: list[str] = field(default_factory=list)
-
-    def announce(self) -> None:
-        """Say where it sends and listens."""
-        for line in self.told:
-            say(line)
-
-
 def vmc_options(command: _Command) -> Callable[..., Any]:
     """Adds the options to a command, which gets them as ``vmc: VmcOptions``."""
 
@@ -145,14 +130,14 @@ def check_vmc(given: set[str], options: VmcOptions) -> None:
 
 
 @contextmanager
-def vmc_links(name: str, face: Face, options: VmcOptions) -> Iterator[VmcLinks]:
+def vmc_links(name: str, face: Face, options: VmcOptions) -> Iterator[Links]:
     """The links of one face while the block runs; its status tells of them."""
     from agentface.io.vmc.names import are_presets
     from agentface.io.vmc.receiver import VmcReceiver
     from agentface.io.vmc.sender import VmcSender
     from agentface.live.newest import LiveSink
 
-    links = VmcLinks()
+    links = Links()
     with ExitStack() as stack:
         if options.listen is not None:
             with wait_told(name, compiled=True):

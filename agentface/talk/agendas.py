@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 
 from agentface.talk.blocks import BlockPlayer
 from agentface.talk.talker import Talker
@@ -22,20 +22,25 @@ class Agendas:
 
     def advance(self, dt: float, move: Callable[[float], None]) -> None:
         """Let ``dt`` seconds pass, for the face by ``move``, and have everything happen at its own time in them."""
-        agendas = [agenda for agenda in (self.blocks, self.talker) if agenda is not None]
-        for agenda in agendas:
-            agenda.advance(0.0)
-        while agendas and (part := min(agenda.due_s for agenda in agendas)) < dt:
+        self._advance(0.0)
+        while (part := min((agenda.due_s for agenda in self._agendas), default=dt)) < dt:
             move(part)
-            for agenda in agendas:
-                agenda.advance(part)
+            self._advance(part)
             dt -= part
         move(dt)
-        for agenda in agendas:
+        self._advance(dt)
+
+    def _advance(self, dt: float) -> None:
+        for agenda in self._agendas:
             agenda.advance(dt)
+        if self.talker is not None:
+            self.talker.advance(0.0)  # what a block has it say now
+
+    @property
+    def _agendas(self) -> Iterator[Talker | BlockPlayer]:
+        return (agenda for agenda in (self.talker, self.blocks) if agenda is not None)
 
     def close(self) -> None:
         """End the voices."""
-        for agenda in (self.talker, self.blocks):
-            if agenda is not None:
-                agenda.close()
+        for agenda in self._agendas:
+            agenda.close()

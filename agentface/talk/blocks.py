@@ -21,6 +21,7 @@ from agentface.speech.spoken import Spoken, joined
 from agentface.speech.synthesizer import Done, Order, Synthesizer
 from agentface.talk.block_speech import performed, script_of_speech
 from agentface.talk.staging import Staged, Staging
+from agentface.talk.talker import LEAD_S
 
 MOST_BLOCKS = 64
 """So many blocks may play and wait."""
@@ -37,8 +38,12 @@ class SpeechPerformer(Protocol):
     latency_s: float
     """How much later than it is performed a speech is shown and heard."""
 
-    def perform(self, spoken: Spoken, *, interrupt: bool = False) -> object:
-        """Say what is spoken already."""
+    @property
+    def busy(self) -> bool:
+        """Whether anything is said."""
+
+    def perform(self, spoken: Spoken, *, interrupt: bool = False, in_s: float = 0.0) -> object:
+        """Say what is spoken already, so many seconds from now."""
 
 
 class BlockFace(Staged, Protocol):
@@ -86,6 +91,7 @@ class _Run:
     start: float
     times: Timetable
     speaking: bool = False
+    told_early: Spoken | None = None
     over: bool = False
 
 
@@ -265,6 +271,8 @@ class BlockPlayer:
         acts = dict(self._acts(run, behavior, times))
         for name, time in zip(behavior.points, times, strict=True):
             if isinstance(behavior.does, Text) and name == STARTS:
+                lead = min(LEAD_S, time)
+                self._at(run, time - early - lead, partial(self._say_soon, run, spoken[behavior.id], lead))
                 self._at(run, time - early, partial(self._say, run, spoken[behavior.id]))
             elif name in acts:
                 self._at(run, time, acts[name])
@@ -299,9 +307,19 @@ class BlockPlayer:
         for number in range(nod.times):
             self._at(run, start + number * each, partial(self._staging.nod, (run, behavior.id), nod, each))
 
+    def _say_soon(self, run: _Run, spoken: Spoken, in_s: float) -> None:
+        """Have the mouth round for a speech before it begins, unless that would end what is said until then."""
+        if not self._face.talker.busy:
+            run.told_early = spoken
+            self._perform(run, spoken, in_s)
+
     def _say(self, run: _Run, spoken: Spoken) -> None:
+        if run.told_early is not spoken:
+            self._perform(run, spoken, 0.0)
+
+    def _perform(self, run: _Run, spoken: Spoken, in_s: float) -> None:
         run.speaking = True
-        self._face.talker.perform(spoken, interrupt=True)
+        self._face.talker.perform(spoken, interrupt=True, in_s=in_s)
 
     def _end(self, run: _Run) -> None:
         run.over = True

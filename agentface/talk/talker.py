@@ -75,12 +75,16 @@ class _Said:
 
 @dataclass(frozen=True, slots=True)
 class _Turn:
-    """A sentence of a text whose turn comes, None for one that failed, and whether its text ends with it."""
+    """A sentence of a text whose turn comes, None for one that failed, and whether its text ends with it.
+
+    It begins no earlier than ``not_before``, on the talker's clock.
+    """
 
     said: _Said
     spoken: Spoken | None
     last: bool
     interrupt: bool = False
+    not_before: float = 0.0
 
 
 class Talker:
@@ -139,11 +143,20 @@ class Talker:
         self._orders.append(order)
         return said.doing
 
-    def perform(self, spoken: Spoken, *, interrupt: bool = False) -> Doing:
-        """Say what is spoken already; likewise."""
+    def perform(self, spoken: Spoken, *, interrupt: bool = False, in_s: float = 0.0) -> Doing:
+        """Say what is spoken already, ``in_s`` seconds from now at the earliest; likewise.
+
+        Told ``LEAD_S`` before, the mouth rounds early for it.
+        """
         said = self._admit(spoken.text, None, interrupt)
-        self._turns.append(_Turn(said, spoken, last=True, interrupt=self._take_interrupt()))
+        turn = _Turn(said, spoken, last=True, interrupt=self._take_interrupt(), not_before=self._now + in_s)
+        self._turns.append(turn)
         return said.doing
+
+    @property
+    def busy(self) -> bool:
+        """Whether anything is said, by whomever."""
+        return bool(self._texts) or self._others_speak()
 
     def wait(self) -> None:
         """Until all sentences are spoken that were asked for: nothing is late then, however the face is stepped."""
@@ -220,7 +233,7 @@ class Talker:
         self._turns.append(_Turn(said, done.spoken, done.last, self._take_interrupt()))
 
     def _begin(self, turn: _Turn) -> None:
-        start = max(self._free, self._now + self.latency_s)
+        start = max(self._free, max(self._now, turn.not_before) + self.latency_s)
         turn.said.doing.begun = True
         if turn.spoken is not None and turn.said.doing.outcome is None:
             self._say(turn.said, turn.spoken, start, turn.interrupt)

@@ -66,3 +66,9 @@ def test_a_performance_with_its_sound(tmp_path):
     assert figures["sound"] == str(tmp_path / "jaw.wav")
     assert read_sound(tmp_path / "jaw.wav").duration_s == pytest.approx(0.5, abs=0.01)
     assert "mm off" in done.output
+    # a sound that is there already under the name is not written over by what was read from it
+    before = (tmp_path / "tone.wav").read_bytes()
+    done = run(tmp_path / "tone.glb", "--performance", tmp_path / "jaw.json", "--shapes", "arkit", "--json", "-")
+    assert done.exit_code == 0, done.output
+    assert (tmp_path / "tone.wav").read_bytes() == before
+    assert (tmp_path / "tone.glb").stat().st_size > 10_000

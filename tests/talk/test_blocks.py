@@ -13,6 +13,7 @@ from agentface.requests import Gesture, Hush, LookAt, PlayBlock, SetActionUnit, 
 from agentface.speech.synthesizer import Synthesizer
 from agentface.talk.block_speech import speak_block, spoken_timetable
 from agentface.talk.blocks import MOST_BLOCKS, BlockPlayer
+from agentface.talk.talker import LEAD_S
 from tests.heads import head_model
 from tests.voices import HundredthsVoice
 
@@ -174,9 +175,9 @@ SPEECH = (
 def test_others_wait_for_the_words_of_a_speech(stage):
     stage.play(SPEECH)
     stage.run(2.0)
-    (spoke, _), *_ = stage.of(Speak)
+    (spoke, speak), *_ = stage.of(Speak)
     first, second = 0.01 * len("Well hello there."), 0.01 * len("Now go.")
-    assert spoke == pytest.approx(0.5)
+    assert (spoke, speak.start) == pytest.approx((0.5 - LEAD_S, LEAD_S)), "the mouth rounds early"
     assert stage.when("s:there") == pytest.approx([0.5 + 0.11])
     assert stage.when("s:go") == pytest.approx([0.5 + first + 0.04])
     assert stage.when("s:end") == pytest.approx([0.5 + first + second])
@@ -191,9 +192,32 @@ def test_others_wait_for_a_loudspeaker_that_is_late(stage):
     stage.play(SPEECH)
     stage.run(2.0)
     (spoke, speak), *_ = stage.of(Speak)
-    assert (spoke, speak.start) == pytest.approx((0.5, 0.06)), "what is heard begins 0.56 s from now"
+    assert spoke + speak.start == pytest.approx(0.56), "what is heard begins 0.06 s before"
     assert stage.when("s:start") == pytest.approx([0.56])
     assert stage.when("s:there") == stage.when("f:start") == pytest.approx([0.56 + 0.11])
+
+
+def test_a_speech_is_told_early_only_where_nothing_else_is_said_until_then(stage):
+    stage.face.speak([("aa", 0.0, 2.0)])
+    stage.play(SPEECH)
+    stage.run(2.0)
+    (spoke, speak), *_ = [each for each in stage.of(Speak) if each[1].live]
+    assert (spoke, speak.start, speak.interrupt) == (pytest.approx(0.5), 0.0, True)
+    assert stage.when("s:start") == pytest.approx([0.5])
+
+
+def test_a_speech_that_is_told_early_and_replaced_before_it_begins_is_never_heard(stage):
+    heard, hushed = [], []
+    stage.face.talker.heard.append(lambda sound, in_s: heard.append(in_s))
+    stage.face.talker.hushed.append(lambda: hushed.append(stage.player._now))
+    stage.play(SPEECH)
+    stage.run(0.4)
+    assert heard == pytest.approx([LEAD_S])
+    stage.play('<wait id="w"/>', "r", composition="REPLACE")
+    stage.run(1.0)
+    assert hushed == pytest.approx([0.4])
+    assert stage.face.channels.speech.status is None
+    assert stage.when("s:start") == []
 
 
 def test_what_is_spoken_before_is_the_same(stage):

@@ -93,8 +93,10 @@ def test_every_shader_compiles(context):
         "eye": ["eye"],
         "anchored": ["part"],
         "cap": ["cap"],
+        "cap_flat": ["cap"],
         "sheet": ["sheet"],
-        "screen": ["background", "copy"],
+        "sheet_flat": ["sheet"],
+        "screen": ["background", "copy", "eye_flat"],
         "bone": ["bone"],
         "film": ["film"],
     }

@@ -2,27 +2,28 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from agentface.conventions import Doubles, Floats
+from agentface.deform.geometry import FaceGeometry
 from agentface.deform.protocol import Deformer
 from agentface.errors import InvalidValueError
 from agentface.head.arkit import ARKIT_SHAPES
 from agentface.head.look import Look
 from agentface.head.model import HeadModel
 from agentface.head.provenance import read_provenance
-from agentface.io.gltf.arkit_shapes import ShapeWeights, bake_arkit
+from agentface.io.gltf.arkit_shapes import Shapes, ShapeWeights, bake_arkit
 from agentface.io.gltf.face_parts import FacePart, face_parts
 from agentface.io.gltf.figure import Figure, Joints, add_joints, eyes_of
 from agentface.io.gltf.materials import add_materials
 from agentface.io.gltf.modes import ModeFinder
 from agentface.io.gltf.recorder import SurfaceRecorder
-from agentface.io.gltf.surface import Surface
-from agentface.io.gltf.writer import GltfWriter, Target, Track, quaternions
+from agentface.io.gltf.surface import SOFT, Surface
+from agentface.io.gltf.writer import GltfWriter, NodeTrack, Target, quaternions
 
 ERROR_MM, MOST_MODES = 0.1, 128
 LONGEST = 20_000
@@ -62,13 +63,22 @@ class FaceGlb:
         self.model, self.look, self._deformer = model, look, deformer
         self.parts = face_parts(model, look)
         self.surface = Surface(model, self.parts)
+        self._rest = FaceGeometry.at_rest(model)
+        self._shapes: tuple[Shapes, Doubles] | None = None
 
-    def with_arkit(self, played: Played | None = None, told: Callable[[float], object] = lambda _: None) -> GlbFace:
+    def bake(self, told: Callable[[float], object] = lambda _: None) -> None:
+        """Bake ARKit's shapes, which :meth:`with_arkit` needs; ``told`` gets the number that are done."""
+        if self._shapes is None:
+            self._shapes = bake_arkit(self.model, self._deformer, self.surface, told)
+
+    def with_arkit(self, played: Played | None = None) -> GlbFace:
         """The face with ARKit's shapes, and with what ``played`` plays as nearly as these show it.
 
-        ``told`` gets how many of the 52 shapes are baked. Raises GraphicsError when there is no OpenGL.
+        Raises GraphicsError when there is no OpenGL.
         """
-        shapes, rows = bake_arkit(self.model, self._deformer, self.surface, told)
+        self.bake()
+        assert self._shapes is not None, "baked above"  # noqa: S101 - for the type checker
+        shapes, rows = self._shapes
         if played is None:
             return self._file(_Shaped(ARKIT_SHAPES, shapes, None, {}), None)
         fitting = ShapeWeights(rows)
@@ -104,26 +114,28 @@ class FaceGlb:
         materials = add_materials(writer, self.model, self.look, self.parts)
         tracks = []
         for part in self.parts:
-            own = [name for name in shaped.order if part.name in shaped.targets[name]]
-            targets = {name: shaped.targets[name][part.name] for name in own}
+            still = Target(np.zeros((len(part.at(self._rest)[0]), 3), np.float32))
+            # who looks for a shape looks on the skin, which has those that move nothing of it, too
+            own = [name for name in shaped.order if part.name in shaped.targets[name] or part.name == SOFT[0]]
+            targets = {name: shaped.targets[name].get(part.name, still) for name in own}
             node = figure.add(part, materials[part.material], targets)
             if shaped.weights is not None and own:
                 columns = [shaped.order.index(name) for name in own]
-                tracks.append(Track(node, "weights", shaped.weights[:, columns].ravel()))
+                tracks.append(NodeTrack(node, "weights", shaped.weights[:, columns].ravel()))
         if recorder is not None:
             tracks += self._turns(recorder, joints)
             writer.animation("performance", recorder.times_s, tracks)
         content = writer.content()
         return GlbFace(content, self._figures(content, shaped, recorder))
 
-    def _turns(self, recorder: SurfaceRecorder, joints: Joints) -> list[Track]:
-        tracks = [Track(joints.nodes["head"], "rotation", quaternions(recorder.heads))]
+    def _turns(self, recorder: SurfaceRecorder, joints: Joints) -> list[NodeTrack]:
+        tracks = [NodeTrack(joints.nodes["head"], "rotation", quaternions(recorder.heads))]
         for number, name in enumerate(eyes_of(self.model)):
-            tracks.append(Track(joints.nodes[name], "rotation", quaternions(recorder.eyes[:, number])))
+            tracks.append(NodeTrack(joints.nodes[name], "rotation", quaternions(recorder.eyes[:, number])))
             thrust = recorder.thrusts[:, number]
             if thrust.any():
                 centre = joints.at[name] - joints.at["head"]
-                tracks.append(Track(joints.nodes[name], "translation", _forward(centre, thrust)))
+                tracks.append(NodeTrack(joints.nodes[name], "translation", _forward(centre, thrust)))
         return tracks
 
     def _figures(self, content: bytes, shaped: _Shaped, recorder: SurfaceRecorder | None) -> dict[str, Any]:
@@ -136,15 +148,15 @@ class FaceGlb:
             "face": self.model.name,
             "bytes": len(content),
             "shapes": list(shaped.order),
-            "meshes": {part.name: part_figures(part) for part in self.parts},
+            "meshes": part_figures(self.model, self.parts),
             **moving,
         }
 
 
-def part_figures(part: FacePart) -> dict[str, int]:
-    """The counts of a part's vertices and triangles."""
-    count = int(part.triangles.max()) + 1
-    return {"vertices": count, "triangles": len(part.triangles)}
+def part_figures(model: HeadModel, parts: Sequence[FacePart]) -> dict[str, dict[str, int]]:
+    """The counts of vertices and triangles by part."""
+    rest = FaceGeometry.at_rest(model)
+    return {part.name: {"vertices": len(part.at(rest)[0]), "triangles": len(part.triangles)} for part in parts}
 
 
 def _forward(centre: Doubles, thrust: Floats) -> Floats:

@@ -36,6 +36,7 @@ _SHADED = 0.75
 _IN_MOUTH = (0.40, 0.16, 0.15)
 """What of the skin's colour is left on the inside of the mouth."""
 _ASIDE_SHADE, _LID_SHADE = 0.6, 0.5
+_SHADED_EYE = (0.0, 0.0, 0.0)
 GUM, TONGUE = (0.46, 0.20, 0.185), (0.40, 0.15, 0.145)
 """As in ``shaders/part.frag.glsl``."""
 _BEHIND_LIPS = 0.85
@@ -186,10 +187,10 @@ def _small_hairs(model: HeadModel, look: Look) -> list[FacePart]:
     chance = irregularities(model, look)
     return [
         FacePart(
-            name, "hair", "head", hair_triangles(hairs), _on_skin(hairs), colours=hair_colours(hairs, look.skin.tone),
+            name, "hair", "head", hair_triangles(hairs), _on_skin(hairs), colours=hair_colours(hairs, under),
             turning=False,
         )
-        for name, hairs in (("brows", chance.brows), ("lashes", chance.lashes))
+        for name, hairs, under in (("brows", chance.brows, look.skin.tone), ("lashes", chance.lashes, _SHADED_EYE))
         if len(hairs)
     ]  # fmt: skip
 

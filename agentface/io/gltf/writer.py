@@ -99,7 +99,7 @@ class GltfWriter(GltfBuffer):
             "skins", {"name": name, "joints": list(joints), "inverseBindMatrices": self.numbers(bind.reshape(-1, 16))}
         )
 
-    def animation(self, name: str, times_s: Doubles, tracks: Sequence[Track]) -> int:
+    def animation(self, name: str, times_s: Doubles, tracks: Sequence[NodeTrack]) -> int:
         """What nodes do at some times, and linearly between them."""
         times = self.numbers(np.asarray(times_s, np.float32))
         samplers = [
@@ -133,7 +133,7 @@ class GltfWriter(GltfBuffer):
         return self.attribute(name, np.asarray(offsets, np.float32))
 
 
-class Track(NamedTuple):
+class NodeTrack(NamedTuple):
     """What one node does: ``values`` a row a time; of weights, ``(T * W,)``."""
 
     node: int

@@ -11,7 +11,6 @@ from typing import Any
 
 from agentface.deform.geometry import FaceGeometry
 from agentface.deform.protocol import Deformer
-from agentface.face import Face
 from agentface.head.look import Look
 from agentface.head.model import HeadModel
 from agentface.head.provenance import read_provenance
@@ -21,7 +20,7 @@ from agentface.io.gltf.figure import Figure, Joints
 from agentface.io.gltf.materials import add_materials
 from agentface.io.gltf.writer import GltfWriter
 from agentface.io.picture import encode
-from agentface.io.vrm.expressions import Expression, ExpressionBaker, Told
+from agentface.io.vrm.expressions import BakedExpression, ExpressionBaker, Told
 from agentface.io.vrm.licence import meta_of
 from agentface.io.vrm.skeleton import EYE_BONES, add_bones
 from agentface.view.renderer import Renderer
@@ -30,13 +29,13 @@ EXTENSION = "VRMC_vrm"
 _THUMBNAIL = 512
 
 
-def encode_avatar(face: Face, look: Look, deformer: Deformer, told: Told = lambda _: None) -> GlbFace:
-    """The avatar of ``face``, which is at rest; ``told`` gets how many expressions are done.
+def encode_avatar(model: HeadModel, look: Look, deformer: Deformer, told: Told = lambda _: None) -> GlbFace:
+    """The avatar of a face; ``told`` gets how many expressions are done.
 
     Raises GraphicsError when there is no OpenGL, which paints its pictures.
     """
-    model, parts = face.model, face_parts(face.model, look)
-    expressions = ExpressionBaker(face, deformer, parts).baked(told)
+    parts = face_parts(model, look)
+    expressions = ExpressionBaker(model, deformer, parts).baked(told)
     provenance = read_provenance(model.folder)
     writer = GltfWriter(provenance.copyright_line)
     joints, bones = add_bones(writer, model)
@@ -68,13 +67,13 @@ def encode_avatar(face: Face, look: Look, deformer: Deformer, told: Told = lambd
         "overrides": {name: list(one.overrides) for name, one in expressions.items() if one.overrides},
         "bones": list(bones),
         "licences": list(provenance.licences),
-        "meshes": {part.name: part_figures(part) for part in parts},
+        "meshes": part_figures(model, parts),
     }
     return GlbFace(content, figures)
 
 
 def _expressions(
-    expressions: Mapping[str, Expression], binds: Mapping[str, list[dict[str, Any]]]
+    expressions: Mapping[str, BakedExpression], binds: Mapping[str, list[dict[str, Any]]]
 ) -> dict[str, dict[str, Any]]:
     found: dict[str, dict[str, Any]] = {"preset": {}, "custom": {}}
     for name, expression in expressions.items():

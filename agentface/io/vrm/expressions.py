@@ -10,33 +10,23 @@ import numpy as np
 from agentface.conventions import SIDES, Doubles, Indices
 from agentface.deform.geometry import FaceGeometry
 from agentface.deform.protocol import Deformer
-from agentface.face import Face
+from agentface.emotion.inference import default_inference
 from agentface.head.model import HeadModel
 from agentface.io.gltf.arkit_shapes import bake_arkit
 from agentface.io.gltf.face_parts import FacePart, released
 from agentface.io.gltf.surface import Surface
 from agentface.io.gltf.writer import Target, moved_between
-from agentface.io.vrm.presets import (
-    BLINKS,
-    EMOTIONS,
-    LOOKS,
-    VISEMES,
-    blink_pose,
-    emotion_pose,
-    look_pose,
-    together,
-    viseme_pose,
-)
 from agentface.parameters import FacePose
+from agentface.vrm.expression_poses import ExpressionPoses
+from agentface.vrm.expressions import PRESETS
 
 OFF_MM = 4.0
 """mm: where lids or lips are farther than that from where the face has them, an emotion holds the other back."""
-NEUTRAL = "neutral"
 Told = Callable[[float], object]
 
 
 @dataclass(frozen=True)
-class Expression:
+class BakedExpression:
     """One expression.
 
     Attributes:
@@ -54,45 +44,45 @@ class ExpressionBaker:
     """Bakes the expressions of one face.
 
     Args:
-        face: shows the emotions; at rest.
+        model: the face.
         deformer: what makes shapes of poses.
         parts: the face's meshes.
     """
 
-    def __init__(self, face: Face, deformer: Deformer, parts: list[FacePart]) -> None:
-        self._face, self._deformer, self._model = face, deformer, face.model
-        self._surface = Surface(face.model, parts)
+    def __init__(self, model: HeadModel, deformer: Deformer, parts: list[FacePart]) -> None:
+        self._model, self._deformer = model, deformer
+        self._surface = Surface(model, parts)
         self._eyes = {part.name: part for part in parts if part.rides in ("eye_l", "eye_r")}
-        self._lids, self._lips = lid_vertices(face.model), lip_vertices(face.model)
+        self._lids, self._lips = lid_vertices(model), lip_vertices(model)
+        self._poses = ExpressionPoses(model, default_inference())
 
-    def baked(self, told: Told = lambda _: None) -> dict[str, Expression]:
+    def baked(self, told: Told = lambda _: None) -> dict[str, BakedExpression]:
         """VRM's eighteen presets, and ARKit's 52 as custom ones; ``told`` gets how many are done."""
-        emotions = {name: emotion_pose(self._face, name) for name in EMOTIONS}
-        visemes = {name: viseme_pose(name) for name in VISEMES}
-        blinks = {name: blink_pose(name) for name in BLINKS}
-        found = {NEUTRAL: Expression({})}
-        for name, pose in (emotions | visemes | blinks).items():
-            overrides: tuple[str, ...] = ()
-            if name in emotions:
-                overrides = self._overrides(pose, list(visemes.values()), list(blinks.values()))
-            found[name] = Expression(self._surface.targets(self._shown(pose)), overrides)
+        found = {}
+        for name, preset in self._poses.table.items():
+            shown = self._shown(self.pose(name))
+            targets = self._surface.targets(shown)
+            if preset.looks is not None:
+                targets |= self._turned_eyes(shown)
+            found[name] = BakedExpression(targets, self._overrides(name) if preset.emotions else ())
             told(len(found))
-        for name in LOOKS:
-            shown = self._shown(look_pose(self._model, name))
-            found[name] = Expression(self._surface.targets(shown) | self._turned_eyes(shown))
-            told(len(found))
-        presets = len(found)
-        shapes, _ = bake_arkit(self._model, self._deformer, self._surface, lambda done: told(presets + done))
-        return found | {name: Expression(targets, custom=True) for name, targets in shapes.items()}
+        shapes, _ = bake_arkit(self._model, self._deformer, self._surface, lambda done: told(len(PRESETS) + done))
+        return found | {name: BakedExpression(targets, custom=True) for name, targets in shapes.items()}
+
+    def pose(self, name: str) -> FacePose:
+        """What the face does for a preset at 1."""
+        return FacePose(self._poses.pose({name: 1.0})[0])
 
     def _shown(self, pose: FacePose) -> FaceGeometry:
         return released(self._model, self._deformer.at(pose))
 
-    def _overrides(self, emotion: FacePose, visemes: list[FacePose], blinks: list[FacePose]) -> tuple[str, ...]:
-        found = []
-        for name, others, where in (("mouth", visemes, self._lips), ("blink", blinks, self._lids)):
-            if max(self.off_mm(emotion, other, where) for other in others) > OFF_MM:
-                found.append(name)
+    def _overrides(self, emotion: str) -> tuple[str, ...]:
+        table, found = self._poses.table, []
+        visemes = [name for name, preset in table.items() if preset.viseme is not None]
+        blinks = [name for name, preset in table.items() if preset.closes]
+        for what, others, where in (("mouth", visemes, self._lips), ("blink", blinks, self._lids)):
+            if max(self.off_mm(self.pose(emotion), self.pose(other), where) for other in others) > OFF_MM:
+                found.append(what)
         return tuple(found)
 
     def off_mm(self, first: FacePose, second: FacePose, where: Indices) -> float:
@@ -110,6 +100,12 @@ class ExpressionBaker:
             turn = shown.eye_rotations[number].T
             found[f"eye_{side}"] = moved_between(rest, (rest[0] @ turn, rest[1] @ turn))
         return found
+
+
+def together(first: FacePose, second: FacePose) -> FacePose:
+    """Both at once, as the face shows it: of each parameter the one that is farther from rest."""
+    a, b = first.array, second.array
+    return FacePose(np.where(np.abs(a) >= np.abs(b), a, b))
 
 
 def lid_vertices(model: HeadModel) -> Indices:

@@ -24,10 +24,10 @@ from agentface.io.web.hub import Client, Hub
 from agentface.io.web.inbox import Inbox
 from agentface.io.web.openapi import openapi
 from agentface.io.web.page_files import FOLDER
-from agentface.io.web.stage import Stage
+from agentface.io.web.stage import FaceStage
 from agentface.requests import Request
 
-OPEN_PATHS = frozenset({"/", "/agentface.js", "/licences.txt", "/favicon.ico"})
+_ICON = "/favicon.ico"
 LARGEST_MESSAGE = 64 * 1024
 """Bytes of one message of a page."""
 _MESSAGES_AT_ONCE, _MESSAGES_A_SECOND = 480.0, 240.0
@@ -46,7 +46,7 @@ class WebFaces:
         clock: limits rates and measures.
     """
 
-    def __init__(self, stages: Mapping[str, Stage], hub: Hub, inbox: Inbox, clock: Clock) -> None:
+    def __init__(self, stages: Mapping[str, FaceStage], hub: Hub, inbox: Inbox, clock: Clock) -> None:
         self.stages, self.hub, self.inbox, self.clock = stages, hub, inbox, clock
         self.joined: Callable[[Client], None] = lambda _: None
         """Called when a page has been told hello."""
@@ -57,7 +57,7 @@ class WebFaces:
         return Starlette(
             routes=[
                 Route("/", _page),
-                Route("/favicon.ico", lambda _: Response(status_code=204)),
+                Route(_ICON, lambda _: Response(status_code=204)),
                 Route("/{file}.js", _page),
                 Route("/licences.txt", _page),
                 Route("/openapi.json", lambda _: JSONResponse(openapi())),
@@ -71,7 +71,7 @@ class WebFaces:
             exception_handlers={AgentFaceError: _refused, 404: _not_found, 405: _not_found},
         )
 
-    def stage(self, face: str | None) -> Stage:
+    def stage(self, face: str | None) -> FaceStage:
         """The face of this id, the first one without; raises UnknownNameError."""
         if face is None:
             return next(iter(self.stages.values()))
@@ -79,7 +79,7 @@ class WebFaces:
             raise UnknownNameError("face", face, tuple(self.stages))
         return self.stages[face]
 
-    def ask(self, stage: Stage, name: Any, told: Any) -> Future[None]:
+    def ask(self, stage: FaceStage, name: Any, told: Any) -> Future[None]:
         """Have a request applied with the next frame; raises what is wrong with it."""
         try:
             request = request_of(name, told)
@@ -150,7 +150,7 @@ class WebFaces:
         await _until_one_ends(client.run(), self._listen(socket, stage, client))
         self.hub.leave(client)
 
-    async def _listen(self, socket: WebSocket, stage: Stage, client: Client) -> None:
+    async def _listen(self, socket: WebSocket, stage: FaceStage, client: Client) -> None:
         rate = RateLimit(self.clock, _MESSAGES_AT_ONCE, _MESSAGES_A_SECOND)
         while True:
             message = await socket.receive()
@@ -165,7 +165,7 @@ class WebFaces:
             if answer is not None:
                 client.tell(answer)
 
-    async def _heard(self, text: str | None, stage: Stage, client: Client) -> str | None:
+    async def _heard(self, text: str | None, stage: FaceStage, client: Client) -> str | None:
         """The answer to what a page says; None for what needs none."""
         told: Any = None
         try:
@@ -184,7 +184,12 @@ class WebFaces:
         return json.dumps({"type": "done", **_id(told)})
 
 
-def _apply(stage: Stage, request: Request | None) -> None:
+def open_paths() -> frozenset[str]:
+    """What needs no token: the page and its programs, which are no secret."""
+    return frozenset({"/", _ICON, *(f"/{file.name}" for file in FOLDER.glob("*"))})
+
+
+def _apply(stage: FaceStage, request: Request | None) -> None:
     counts = stage.face.message_counts
     try:
         if request is not None:
@@ -195,7 +200,7 @@ def _apply(stage: Stage, request: Request | None) -> None:
     counts.messages += 1
 
 
-def _count(stage: Stage, kind: str) -> None:
+def _count(stage: FaceStage, kind: str) -> None:
     stage.face.message_counts.errors[kind] += 1
 
 

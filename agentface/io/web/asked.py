@@ -41,7 +41,7 @@ Schema = dict[str, Any]
 
 
 @dataclass(frozen=True, slots=True)
-class Asked:
+class RequestKind:
     """A kind of request.
 
     Attributes:
@@ -79,7 +79,7 @@ def request_of(name: str, told: Any) -> Request | None:
         raise InvalidValueError(name, f"an object of {', '.join(asked.fields) or 'nothing'}", got) from error
 
 
-def _checked(asked: Asked, told: Any) -> dict[str, Any]:
+def _checked(asked: RequestKind, told: Any) -> dict[str, Any]:
     if not isinstance(told, dict):
         raise InvalidValueError("body", "an object, or a list of OSC's arguments", type(told).__name__)
     for name in told:
@@ -153,26 +153,26 @@ def _bml(bml: Any) -> Request:
     return PlayBlock(read_bml(bml, "bml"))
 
 
-ASKED: dict[str, Asked] = {
-    "emotion": Asked(
+ASKED: dict[str, RequestKind] = {
+    "emotion": RequestKind(
         "Show an emotion beside those that are shown.",
         SetEmotion,
         {"emotion": _EMOTION, "intensity": _SHARE, "fade": _FADE, "hold": _HOLD},
         ("emotion", "intensity"),
     ),
-    "emotions": Asked(
+    "emotions": RequestKind(
         "Show exactly these emotions.",
         _mixed,
         {"emotions": _levels("intensities 0..1 by name"), "fade": _FADE, "hold": _HOLD},
         ("emotions",),
     ),
-    "mood": Asked(
+    "mood": RequestKind(
         "Have a mood, to which brief emotions return; none without emotions.",
         _mood,
         {"emotions": _levels("intensities 0..1 by name"), "fade": _FADE},
     ),
-    "neutral": Asked("Let go of everything but the mood.", Neutral, {"fade": _FADE}),
-    "say": Asked(
+    "neutral": RequestKind("Let go of everything but the mood.", Neutral, {"fade": _FADE}),
+    "say": RequestKind(
         "Say a text; emotions in brackets, as in [joy] Hello, are shown at their words.",
         Say,
         {
@@ -184,20 +184,20 @@ ASKED: dict[str, Asked] = {
         },
         ("text",),
     ),
-    "hush": Asked("Say no more.", Hush, {}),
-    "state": Asked(
+    "hush": RequestKind("Say no more.", Hush, {}),
+    "state": RequestKind(
         "Live for something; null as by itself: speaking while the face speaks, else idle.",
         SetState,
         {"state": {"description": "idle, listening, thinking or speaking", "type": ["string", "null"]}},
         ("state",),
     ),
-    "liveliness": Asked(
+    "liveliness": RequestKind(
         "Live between messages: 0, perfectly still, to 1.",
         SetLiveliness,
         {"liveliness": _SHARE, "fade": _FADE},
         ("liveliness",),
     ),
-    "gaze": Asked(
+    "gaze": RequestKind(
         "Look far away.",
         SetGaze,
         {
@@ -207,7 +207,7 @@ ASKED: dict[str, Asked] = {
         },
         ("yaw_deg", "pitch_deg"),
     ),
-    "look_at": Asked(
+    "look_at": RequestKind(
         "Look at a point in front of the face, in metres of the head's axes.",
         LookAt,
         {
@@ -218,7 +218,7 @@ ASKED: dict[str, Asked] = {
         },
         ("x", "y", "z"),
     ),
-    "head": Asked(
+    "head": RequestKind(
         "Turn the head.",
         SetHead,
         {
@@ -229,20 +229,20 @@ ASKED: dict[str, Asked] = {
         },
         ("yaw_deg", "pitch_deg"),
     ),
-    "blink": Asked("Blink once.", Blink, {}),
-    "gesture": Asked(
+    "blink": RequestKind("Blink once.", Blink, {}),
+    "gesture": RequestKind(
         "Nod, shake the head, raise the brows, ...",
         Gesture,
         {"name": _text("of rules/gestures.yaml"), "strength": _SHARE, "length": _number("seconds", 0.0)},
         ("name",),
     ),
-    "viseme": Asked(
+    "viseme": RequestKind(
         "Show one viseme.",
         ShowViseme,
         {"name": _text("of rules/visemes.yaml"), "weight": _SHARE, "duration": _number("seconds", 0.0)},
         ("name", "weight"),
     ),
-    "visemes": Asked(
+    "visemes": RequestKind(
         "Move the mouth as for sounds.",
         Speak.of,
         {
@@ -256,13 +256,13 @@ ASKED: dict[str, Asked] = {
         },
         ("phones",),
     ),
-    "muscle": Asked(
+    "muscle": RequestKind(
         "Hold a muscle, on both sides where its name has none; null releases it.",
         SetMuscle,
         {"name": _text("a muscle"), "contraction": {"description": "0..1", "type": ["number", "null"]}, "fade": _FADE},
         ("name", "contraction"),
     ),
-    "parameter": Asked(
+    "parameter": RequestKind(
         "Set any parameter; null releases it.",
         SetParameter,
         {
@@ -272,7 +272,7 @@ ASKED: dict[str, Asked] = {
         },
         ("name", "value"),
     ),
-    "au": Asked(
+    "au": RequestKind(
         "Show an action unit of FACS.",
         SetActionUnit,
         {
@@ -283,19 +283,19 @@ ASKED: dict[str, Asked] = {
         },
         ("number", "intensity"),
     ),
-    "arkit": Asked(
+    "arkit": RequestKind(
         "Show some of ARKit's 52 weights.",
         _arkit,
         {"weights": _levels("0..1 by ARKit's names"), "fade": _FADE},
         ("weights",),
     ),
-    "fap": Asked(
+    "fap": RequestKind(
         "Show one low-level FAP of MPEG-4.",
         SetFap,
         {"number": {"description": "3..68", "type": "integer"}, "value": _number("in FAP units"), "fade": _FADE},
         ("number", "value"),
     ),
-    "faps": Asked(
+    "faps": RequestKind(
         "Show a frame of FAPs.",
         _faps,
         {
@@ -306,6 +306,6 @@ ASKED: dict[str, Asked] = {
         },
         ("faps",),
     ),
-    "bml": Asked("Play a block of BML.", _bml, {"bml": _text("the block")}, ("bml",)),
+    "bml": RequestKind("Play a block of BML.", _bml, {"bml": _text("the block")}, ("bml",)),
 }
 """By the names that OSC has for them, too."""

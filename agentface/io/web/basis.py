@@ -12,7 +12,7 @@ from agentface.deform import tables as deform_tables
 from agentface.deform.crowd import Crowd
 from agentface.deform.geometry import FaceGeometry
 from agentface.head.model import HeadModel
-from agentface.io.web.modes import Modes, principal_modes, stored
+from agentface.io.web.modes import ModeSet, principal_modes, stored
 from agentface.io.web.poses import natural_poses, random_mixtures
 from agentface.io.web.unfinished import Unfinished
 
@@ -35,8 +35,8 @@ class Basis:
         tongue: of the T vertices of the tongue, before the jaw moves it.
     """
 
-    skin: Modes
-    tongue: Modes
+    skin: ModeSet
+    tongue: ModeSet
 
 
 class Projector:
@@ -72,7 +72,7 @@ class _Part:
         places: which points are measured.
     """
 
-    def __init__(self, modes: Modes, rest: Floats, count: int, without: Indices | None = None) -> None:
+    def __init__(self, modes: ModeSet, rest: Floats, count: int, without: Indices | None = None) -> None:
         shapes = modes.shapes.astype(np.float64)
         likely = np.sqrt((shapes / np.linalg.norm(shapes, axis=(1, 2), keepdims=True)) ** 2).sum(axis=(0, 2))
         if without is not None:
@@ -126,6 +126,6 @@ def sampled(crowd: Crowd, poses: Floats, told: Callable[[float], object] = lambd
     return skin, tongue
 
 
-def _modes(samples: Floats, count: int, rng: np.random.Generator) -> Modes:
+def _modes(samples: Floats, count: int, rng: np.random.Generator) -> ModeSet:
     rows = principal_modes(samples, count, rng)
     return stored(rows, _MARGIN * np.abs(samples @ rows.T).max(axis=0))

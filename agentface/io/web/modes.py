@@ -18,7 +18,7 @@ _LEAST = 1e-12  # of the largest variance
 _WHOLE = 32767
 
 
-class Modes(NamedTuple):
+class ModeSet(NamedTuple):
     """K movements of N points, in the order of what they matter.
 
     Attributes:
@@ -54,8 +54,8 @@ def principal_modes(samples: Floats, count: int, rng: np.random.Generator) -> Fl
     return np.ascontiguousarray(rows)
 
 
-def stored(rows: Floats, reach: Floats) -> Modes:
+def stored(rows: Floats, reach: Floats) -> ModeSet:
     """Directions ``(K, 3 N)`` in whole numbers, where the weight 1 goes ``reach (K,)`` m along each."""
     largest = np.maximum(np.abs(rows).max(axis=1), np.finfo(np.float32).tiny)
     shapes = np.rint(rows * (_WHOLE / largest)[:, None]).astype(np.int16)
-    return Modes(shapes.reshape(len(rows), -1, 3), (reach * largest / _WHOLE).astype(np.float32))
+    return ModeSet(shapes.reshape(len(rows), -1, 3), (reach * largest / _WHOLE).astype(np.float32))

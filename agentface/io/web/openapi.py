@@ -5,7 +5,7 @@ from __future__ import annotations
 from functools import cache
 from typing import Any
 
-from agentface.io.web.asked import ASKED, Asked
+from agentface.io.web.asked import ASKED, RequestKind
 
 _STATUS = "What the face is doing now, as Face.status() in Python and /agentface/status over OSC."
 
@@ -63,7 +63,7 @@ def _get(name: str, summary: str, parameters: list[dict[str, Any]]) -> dict[str,
     return {"operationId": name, "summary": summary, "parameters": parameters, "responses": {"200": answer, **_REFUSED}}
 
 
-def _post(name: str, asked: Asked, parameters: list[dict[str, Any]]) -> dict[str, Any]:
+def _post(name: str, asked: RequestKind, parameters: list[dict[str, Any]]) -> dict[str, Any]:
     schema = {
         "type": "object",
         "properties": dict(asked.fields),

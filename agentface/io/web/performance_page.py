@@ -5,6 +5,7 @@ from __future__ import annotations
 import base64
 import gzip
 import json
+from collections.abc import Callable
 
 from agentface.errors import InvalidValueError
 from agentface.head.look import Look
@@ -29,19 +30,31 @@ class PerformancePage:
         look: its colours and lights.
         basis: its movements.
 
-    ``show`` raises InvalidValueError for more than 120 000 frames.
+    ``show`` raises InvalidValueError for more than 120 000 frames; ``told`` is told the time of each, in s.
     """
 
     def __init__(self, model: HeadModel, look: Look, basis: Basis) -> None:
         self._model, self._look, self._basis = model, look, basis
         self._writer = FrameWriter(model, basis)
         self._messages: list[bytes] = []
+        self.told: Callable[[float], object] = lambda _: None
+
+    @staticmethod
+    def check() -> None:
+        """Raise OutputError where the page was not built."""
+        page_file("recording.html")
+
+    @property
+    def frames(self) -> int:
+        """How many have been taken."""
+        return len(self._messages)
 
     def show(self, frame: Frame) -> None:
         """Take the next frame."""
         if len(self._messages) >= MOST_FRAMES:
             raise InvalidValueError("frames of a page", f"at most {MOST_FRAMES}", "more", "ask for fewer a second")
         self._messages.append(self._writer.write("basis", len(self._messages), frame.time_s, frame.geometry))
+        self.told(frame.time_s)
 
     def record(self, sound: Sound | None = None) -> str:
         """The performance in JSON, as ``page/src/recording.js`` reads it; the sound begins with the first frame.

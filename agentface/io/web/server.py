@@ -22,7 +22,7 @@ from agentface.io.web.audio import pieces, silence
 from agentface.io.web.guard import guarded
 from agentface.io.web.hub import Client, Hub
 from agentface.io.web.inbox import Inbox
-from agentface.io.web.stage import HeadEncoder, Measure, Stage, basis_of, encode_head_file
+from agentface.io.web.stage import FaceStage, HeadEncoder, Measure, basis_of, encode_head_file
 from agentface.live.loop import Frame
 from agentface.speech.sound import Sound
 
@@ -76,14 +76,17 @@ class WebServer:
         uvicorn = _uvicorn()
         self.access = Access.of(host, origins, token)
         self._clock = clock or SystemClock()
-        self._stages = {
-            name: Stage(face, name, deformer=deformer, look=look, encode=encode, fps=fps, told=told, measure=measure)
-            for name, face in _by_id(faces).items()
-        }
-        self._hub, self._inbox = Hub(), Inbox()
-        self._voices = {name: _Voice(stage.face, partial(self._tell, name)) for name, stage in self._stages.items()}
+        named = _by_id(faces)
         self._socket = _listen(host, port)
         self.host, self.port = self._socket.getsockname()[:2]
+        options: dict[str, Any] = {"deformer": deformer, "look": look, "encode": encode, "fps": fps, "told": told}
+        try:
+            self._stages = {name: FaceStage(face, name, measure=measure, **options) for name, face in named.items()}
+        except BaseException:
+            self._socket.close()
+            raise
+        self._hub, self._inbox = Hub(), Inbox()
+        self._voices = {name: _Voice(stage.face, partial(self._tell, name)) for name, stage in self._stages.items()}
         self._frame = 0
         self._loop: asyncio.AbstractEventLoop | None = None
         self._server = uvicorn.Server(self._config(uvicorn))
@@ -137,11 +140,11 @@ class WebServer:
         self.close()
 
     def _config(self, uvicorn: Any) -> Any:
-        from agentface.io.web.app import LARGEST_MESSAGE, OPEN_PATHS, WebFaces
+        from agentface.io.web.app import LARGEST_MESSAGE, WebFaces, open_paths
 
         faces = WebFaces(self._stages, self._hub, self._inbox, self._clock)
         faces.joined = self._catch_up
-        app = guarded(faces.app(), self.access, open_paths=OPEN_PATHS, clock=self._clock)
+        app = guarded(faces.app(), self.access, open_paths=open_paths(), clock=self._clock)
         return uvicorn.Config(
             app,
             log_config=None,
@@ -203,7 +206,8 @@ class _Voice:
         self._talker.heard.append(self._hear)
         self._talker.hushed.append(self._hush)
         self._talker.ended.append(self._end)
-        self._talker.latency_s = max(self._talker.latency_s, _HEARD_LATER_S)
+        self._latency_s = self._talker.latency_s
+        self._talker.latency_s = max(self._latency_s, _HEARD_LATER_S)
 
     def rest(self) -> list[bytes]:
         """What is being heard and what waits to be."""
@@ -213,6 +217,7 @@ class _Voice:
         self._talker.heard.remove(self._hear)
         self._talker.hushed.remove(self._hush)
         self._talker.ended.remove(self._end)
+        self._talker.latency_s = self._latency_s
 
     def _current(self) -> list[tuple[float, Sound]]:
         self._parts = [(start, sound) for start, sound in self._parts if start + sound.duration_s > self.now_s]

@@ -1,4 +1,4 @@
-""":class:`Stage`: a face as pages see it: its basis, its head as a file, its frames, its voice."""
+""":class:`FaceStage`: a face as pages see it: its basis, its head as a file, its frames, its voice."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ class HeadFile:
     etag: str
 
 
-class Stage:
+class FaceStage:
     """A face and what pages need of it.
 
     Args:

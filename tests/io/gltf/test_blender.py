@@ -24,8 +24,8 @@ for path in sys.argv[sys.argv.index("--") + 1:]:
     skin = bpy.data.objects["skin"]
     keys = [key.name for key in skin.data.shape_keys.key_blocks] if skin.data.shape_keys else []
     curves = max((len(action.fcurves) for action in bpy.data.actions), default=0)
-    found[path] = {"vertices": len(skin.data.vertices), "keys": keys, "actions": len(bpy.data.actions), "curves": curves,
-                   "meshes": sorted(o.name for o in bpy.data.objects if o.type == "MESH")}
+    found[path] = {"vertices": len(skin.data.vertices), "keys": keys, "actions": len(bpy.data.actions),
+                   "curves": curves, "meshes": sorted(o.name for o in bpy.data.objects if o.type == "MESH")}
 print("FOUND" + json.dumps(found))
 """
 

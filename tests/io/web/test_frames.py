@@ -15,7 +15,7 @@ from agentface.errors import InvalidValueError
 from agentface.head.model import load_model
 from agentface.io.web.basis import SKIN_MODES, TONGUE_MODES, Basis
 from agentface.io.web.frames import FRAME, FrameReader, FrameWriter, basis_layout, matrix_of, quaternions
-from agentface.io.web.modes import Modes
+from agentface.io.web.modes import ModeSet
 from agentface.io.web.poses import natural_poses, random_mixtures
 from agentface.io.web.stage import basis_of
 from agentface.io.web.unfinished import Unfinished, turn_of
@@ -133,7 +133,10 @@ def each(crowd, poses):
 @pytest.mark.parametrize("name", ["amber", "onyx"])
 def test_a_second_is_at_most_twenty_kilobytes(name):
     few = Basis(
-        *(Modes(np.zeros((count, 1, 3), np.int16), np.ones(count, np.float32)) for count in (SKIN_MODES, TONGUE_MODES))
+        *(
+            ModeSet(np.zeros((count, 1, 3), np.int16), np.ones(count, np.float32))
+            for count in (SKIN_MODES, TONGUE_MODES)
+        )
     )
     header = 1 + 4  # the kind, and what a WebSocket puts before such a message
     assert 60 * (header + basis_layout(few, len(load_model(name).trains)).size) <= 20_000

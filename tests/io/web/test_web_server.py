@@ -180,9 +180,9 @@ def test_what_there_is(server):
 def test_without_its_page_a_server_says_how_to_get_it(server, monkeypatch, tmp_path):
     from agentface.io.web import app
 
-    monkeypatch.setattr(app, "PAGE", tmp_path)
+    monkeypatch.setattr(app, "FOLDER", tmp_path)
     code, _, content = ask(server, "GET", "/")
-    assert (code, b"make build" in content) == (200, True)
+    assert (code, b"make page" in content) == (200, True)
     assert ask(server, "GET", "/agentface.js")[0] == 404
     for name in ("index.html", "agentface.js", "licences.txt"):
         (tmp_path / name).write_text(name)

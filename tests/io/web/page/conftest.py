@@ -21,6 +21,8 @@ _FLAGS = (
     "--autoplay-policy=no-user-gesture-required",
 )
 SIZE = 240, 300
+"""Of pictures that are compared."""
+_SMALL = 120, 150
 
 
 @pytest.fixture(scope="session")
@@ -52,7 +54,7 @@ def files(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Files]:
 @contextmanager
 def opened(chromium: Browser) -> Iterator[Page]:
     """A page of its own; what it throws, or WebGL says against it, fails the test."""
-    context = chromium.new_context(viewport={"width": SIZE[0], "height": SIZE[1]})
+    context = chromium.new_context(viewport={"width": _SMALL[0], "height": _SMALL[1]})
     page = context.new_page()
     page.set_default_timeout(120_000)
     thrown: list[str] = []

@@ -19,7 +19,7 @@ from agentface.head.model import HeadModel
 from agentface.io.web.basis import Basis
 from agentface.io.web.frames import rigid_values
 from agentface.io.web.head_file import encode_head
-from agentface.io.web.modes import Modes
+from agentface.io.web.modes import ModeSet
 from agentface.io.web.unfinished import Unfinished
 from tests.tools import PAGE
 
@@ -67,7 +67,7 @@ def serve_files(folder: Path) -> Iterator[Files]:
 def no_basis(model: HeadModel) -> Basis:
     """A basis in which nothing moves."""
     skin, tongue = (
-        Modes(np.zeros((1, count, 3), np.int16), np.zeros(1, np.float32))
+        ModeSet(np.zeros((1, count, 3), np.int16), np.zeros(1, np.float32))
         for count in (len(model.vertices), len(model.parts["tongue"].attributes["POSITION"]))
     )
     return Basis(skin, tongue)

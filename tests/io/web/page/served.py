@@ -7,17 +7,15 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Any
 
-import pytest
-
 from agentface.clock import SystemClock
 from agentface.deform.geometry import FaceGeometry
 from agentface.face import Face
-from agentface.io.web import basis, stage
 from agentface.io.web.basis import Basis, make_basis
 from agentface.io.web.server import WebServer
-from agentface.live.loop import Frame, run
+from agentface.io.web.stage import FaceStage
+from agentface.live.loop import Frame, Sink, run
 
-_SAMPLES = 90, 60
+_SAMPLES = 120, 40
 _FPS = 20.0
 _KEPT = 200
 
@@ -29,7 +27,7 @@ class Served:
         self.face, self.server, self.sent = face, server, dict[int, FaceGeometry]()
 
     @property
-    def stage(self) -> stage.Stage:
+    def stage(self) -> FaceStage:
         """What pages see of the face."""
         return self.server._stages[self.face.model.name]
 
@@ -41,32 +39,26 @@ class Served:
 
 def rough_basis(face: Face, deformer: str, _: Any = None) -> Basis:
     """As :func:`agentface.io.web.stage.basis_of`, of few samples."""
-
-    def make(model: Any) -> Basis:
-        with pytest.MonkeyPatch.context() as patch:
-            patch.setattr(basis, "_SAMPLES", {True: _SAMPLES, False: _SAMPLES})
-            return make_basis(model, deformer)
-
-    made: Basis = face.model.derived(f"tests.web.basis.{deformer}", make)
+    made: Basis = face.model.derived(f"tests.web.basis.{deformer}", lambda model: make_basis(model, deformer, _SAMPLES))
     return made
 
 
 @contextmanager
 def serving(name: str = "amber", **options: Any) -> Iterator[Served]:
     """A served face, at rest until it is asked for something."""
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(stage, "basis_of", rough_basis)
-        face = Face(name)
-        ended = threading.Event()
-        with WebServer(face, port=options.pop("port", 0), fps=_FPS, **options) as server:
-            served = Served(face, server)
-            loop = threading.Thread(
-                target=lambda: run(face, SystemClock(), [server], [server, served], fps=_FPS, stopped=ended.is_set)
-            )
-            loop.start()
-            try:
-                yield served
-            finally:
-                ended.set()
-                loop.join()
-        face.close()
+    face = Face(name)
+    ended = threading.Event()
+    options = {"port": 0, "fps": _FPS, "measure": rough_basis, **options}
+    with WebServer(face, **options) as server:
+        served = Served(face, server)
+        sinks: list[Sink] = [server, served]
+        loop = threading.Thread(
+            target=lambda: run(face, SystemClock(), [server], sinks, fps=_FPS, stopped=ended.is_set)
+        )
+        loop.start()
+        try:
+            yield served
+        finally:
+            ended.set()
+            loop.join()
+    face.close()

@@ -59,6 +59,13 @@ def test_a_page_asks_and_is_answered(tab, served):
     tab.evaluate(f"{ELEMENT}.request('neutral', 0)")
 
 
+def test_an_element_that_is_moved_shows_its_face_again(tab, served):
+    tab.goto(served.server.url)
+    tab.wait_for_function(DRAWN)
+    before = tab.evaluate(f"() => {{ const face = {ELEMENT}; document.body.append(face); return face.drawn; }}")
+    tab.wait_for_function(f"{ELEMENT}.face && {ELEMENT}.drawn > {before} + 1")
+
+
 def test_what_is_drawn_is_confirmed(tab, served, record_property):
     tab.goto(served.server.url)
     tab.wait_for_function(DRAWN)
@@ -69,8 +76,9 @@ def test_what_is_drawn_is_confirmed(tab, served, record_property):
 
 
 def test_a_transparent_page_has_nothing_behind_the_face(tab, served):
-    tab.goto(f"{served.server.url}?transparent")
+    tab.goto(f"{served.server.url}?transparent&onclick=fetch('/')&server=http://127.0.0.1:1")
     tab.wait_for_function(DRAWN)
+    assert tab.evaluate(f"{ELEMENT}.getAttributeNames()") == ["transparent"]
     tab.wait_for_timeout(500)
     picture = np.asarray(Image.open(io.BytesIO(tab.screenshot(omit_background=True))).convert("RGBA"))
     assert (picture[:10, :10] == 0).all()

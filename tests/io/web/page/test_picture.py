@@ -13,10 +13,12 @@ from PIL import Image
 from playwright.sync_api import Browser, Page
 
 from agentface.conventions import Bytes
+from agentface.head.look import load_look
+from agentface.io.web.head_file import encode_head
 from agentface.view.camera import named_view
 from agentface.view.renderer import Renderer
 from tests.io.web.page.conftest import SIZE, opened
-from tests.io.web.page.files import Files, exact_frame, settled
+from tests.io.web.page.files import Files, exact_frame, no_basis, settled
 
 pytestmark = [pytest.mark.slow, pytest.mark.gl]
 
@@ -100,6 +102,12 @@ def test_page_draws_the_portrait(stages, files, renderers, face, emotion, camera
     assert off[box].mean() < 2.0
     assert off.mean() < 2.0
     assert (off.max(axis=2) > 40).mean() < 0.01
+
+
+def test_the_same_head_gives_the_same_bytes(files):
+    model = settled("onyx")[0].model
+    name = files.head("onyx").rpartition("/")[2]
+    assert encode_head(model, load_look(model), no_basis(model)) == (files.folder / name).read_bytes()
 
 
 def test_page_puts_the_skin_where_the_engine_does(stages, files):

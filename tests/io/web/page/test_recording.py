@@ -2,16 +2,23 @@
 
 from __future__ import annotations
 
+import base64
+import gzip
 import json
+from pathlib import Path
 
 import numpy as np
 import pytest
+from click.testing import CliRunner
 
+from agentface.cli import main
 from agentface.clock import FrameClock
 from agentface.errors import InvalidValueError
 from agentface.face import Face
 from agentface.head.look import load_look
+from agentface.io.web import stage
 from agentface.io.web.frames import FrameReader
+from agentface.io.web.layout import Layout
 from agentface.io.web.performance_page import PerformancePage
 from agentface.live.loop import run
 from agentface.speech.sound import Sound
@@ -19,6 +26,9 @@ from tests.io.web.page.files import settled
 from tests.io.web.page.served import rough_basis
 from tests.tools import require_page
 
+pytestmark = pytest.mark.slow
+
+EXAMPLES = Path(__file__).parents[4] / "examples"
 ELEMENT = "document.querySelector('agent-face')"
 FPS = 10.0
 
@@ -36,17 +46,17 @@ def recorded():
 
     face.set_emotion("happiness", 1.0)
     run(face, FrameClock(FPS), sinks=[page, Keeper()], fps=FPS, duration=1.0)
-    return page, kept
+    require_page()
+    samples = (8000 * np.sin(np.arange(8000) * 0.3)).astype(np.int16)
+    return page, kept, page.content(Sound(samples, 8000))
 
 
-@pytest.mark.slow
 def test_a_recording_plays_without_a_server_and_without_a_network(chromium, tmp_path, recorded):
     from tests.io.web.page.conftest import opened
 
-    page, kept = recorded
-    samples = (8000 * np.sin(np.arange(8000) * 0.3)).astype(np.int16)
+    page, kept, content = recorded
     path = tmp_path / "joy.html"
-    path.write_text(page.content(Sound(samples, 8000)))
+    path.write_text(content)
     with opened(chromium) as tab:
         tab.context.set_offline(offline=True)
         tab.goto(path.as_uri())
@@ -66,21 +76,43 @@ def test_a_recording_plays_without_a_server_and_without_a_network(chromium, tmp_
 
 
 def test_a_page_holds_the_licences_of_what_is_in_it(recorded):
-    require_page()
-    content = recorded[0].content()
+    content = recorded[2]
     assert "three 0." in content
     assert "Permission is hereby granted" in content
     assert content.count("</script>") == content.count("<script") == 4
     assert "http://" not in content.partition('<script type="module">')[0].replace("http://www.w3.org", "")
 
 
-def test_the_same_performance_gives_the_same_record(recorded):
-    record = json.loads(recorded[0].record())
-    assert record == json.loads(recorded[0].record())
-    assert record["sound"] is None
-
-
 def test_a_page_without_frames_is_refused(recorded):
     model = settled("amber")[0].model
     with pytest.raises(InvalidValueError, match="one frame or more"):
         PerformancePage(model, load_look(model), recorded[0]._basis).record()
+
+
+def test_export_writes_a_page(tmp_path, monkeypatch):
+    require_page()
+    monkeypatch.setattr(stage, "basis_of", rough_basis)
+    path = tmp_path / "surprise.html"
+    command = [
+        "export",
+        str(path),
+        "--performance",
+        str(EXAMPLES / "surprise_then_joy.fap"),
+        "--fps",
+        "5",
+        "--json",
+        "-",
+    ]
+    ran = CliRunner().invoke(main, command)
+    assert ran.exit_code == 0, ran.output
+    told = json.loads(ran.stdout)
+    assert (told["format"], told["bytes"], told["sound"]) == ("html", path.stat().st_size, False)
+    record = json.loads(path.read_text().partition('id="performance">')[2].partition("</script>")[0])
+    size = 1 + Layout.from_json(record["fields"]).size
+    assert len(gzip.decompress(base64.b64decode(record["frames"]))) == size * told["frames"]
+
+
+def test_export_of_a_page_wants_a_performance():
+    ran = CliRunner().invoke(main, ["export", "x.html"])
+    assert ran.exit_code == 2
+    assert "--performance FILE" in ran.output

@@ -31,6 +31,7 @@ export class AgentFace extends HTMLElement {
 
   connectedCallback() {
     this.makeStage();
+    if (this.head) this.wear(this.head.url, this.head.bytes, this.head.shown);
     this.begin();
     for (const type of ['pointerdown', 'keydown']) document.addEventListener(type, this.unlock);
   }
@@ -78,9 +79,16 @@ export class AgentFace extends HTMLElement {
 
   /** Speak; resolves when it has been spoken. */
   async say(text) {
-    const spoken = new Promise((resolve) => this.addEventListener('spoken', (event) => resolve(event.detail), { once: true }));
-    await this.request('say', text);
-    return spoken;
+    const ended = new AbortController();
+    const spoken = new Promise((resolve) => {
+      this.addEventListener('spoken', (event) => resolve(event.detail), { once: true, signal: ended.signal });
+    });
+    try {
+      await this.request('say', text);
+      return await spoken;
+    } finally {
+      ended.abort();
+    }
   }
 
   /** Look at a point in metres, in the head's axes: x to the person's left, y up, z forward. */

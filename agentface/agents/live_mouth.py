@@ -1,4 +1,4 @@
-""":class:`Mouth`: has a face's mouth say phones that are known better from frame to frame."""
+""":class:`LiveMouth`: has a face's mouth say phones that are known better from frame to frame."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _PAST_S = 0.5
 _SHUT_S = 0.1
 
 
-class Mouth:
+class LiveMouth:
     """Tells ``face`` what is new of the phones of one sound."""
 
     def __init__(self, face: Face) -> None:
