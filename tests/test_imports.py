@@ -51,6 +51,10 @@ OWNERS = {
     "miniaudio": {"io"},
     "pocketsphinx": {"speech"},
     "defusedxml": {"io"},
+    "mcp": {"agents", "commands"},
+    "pipecat": {"agents"},
+    "livekit": {"agents"},
+    "aiavatar": {"agents"},
     "PIL": {"head", "io", "view", "studies"},
 }
 
