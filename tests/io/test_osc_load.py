@@ -150,7 +150,7 @@ def flood_of(times, frames, watch=lambda face: None):
         finally:
             flood.close()
         server.take_in()  # what came after the last frame
-        assert not server._waiting
+        assert not server._listener.waiting
     return flood, face.message_counts, watched
 
 

@@ -187,7 +187,7 @@ def test_what_the_system_refuses_is_blamed_on_nobody_else():
 
 def test_closing_frees_the_port_and_the_thread(face):
     def listening():
-        return [thread for thread in threading.enumerate() if thread.name == "agentface-osc"]
+        return [thread for thread in threading.enumerate() if thread.name == "agentface-udp"]
 
     before = listening()
     server = OscServer(face, port=0)
