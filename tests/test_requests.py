@@ -182,7 +182,6 @@ def test_the_methods_of_a_face_make_requests(face):
         Blink(),
         Speak((Phone("p", 0.0, 0.1), Phone("AA1", 0.1, 0.3)), rate=1.2, interrupt=True),
         ShowViseme("aa", 0.5, 1.0),
-        TakeBack(Speak((Phone("p", 0.0, 0.1),))),
         Hush(),
         Gesture("brow_flash", 0.5),
         SetLiveliness(0.3),
