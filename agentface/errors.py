@@ -142,6 +142,18 @@ class ServerError(AgentFaceError):
     """A server that cannot start, for example because its port is taken."""
 
 
+class MissingPackageError(AgentFaceError, ImportError):
+    """A Python package that what was asked for needs, and the extra of agentface that brings it."""
+
+    def __init__(self, package: str, extra: str, purpose: str) -> None:
+        self.package, self.extra, self.purpose = package, extra, purpose
+        text = f"expected the Python package {package}, got none; {purpose}"
+        super().__init__(f'{text}\nInstall the extra that has it:  pip install "agentface[{extra}]"')
+
+    def __reduce__(self) -> tuple[type[MissingPackageError], tuple[str, str, str]]:
+        return type(self), (self.package, self.extra, self.purpose)
+
+
 def shown(text: str, longest: int = 40) -> str:
     """What came, as a message quotes it: in quotes, printable, and not too long."""
     return repr(text) if len(text) <= longest else f"{text[: longest - 3]!r}..."

@@ -88,6 +88,8 @@ class Face(ExpressionCalls, MovementCalls, SpeechCalls, AwaitableTwins):
         self.message_counts = MessageCounts()
         self.noted: list[Callable[[Request], None]] = []
         """Called with every request after it was applied: who steps a face again later notes them here."""
+        self.reports: dict[str, Callable[[], object]] = {}
+        """What the status has beside its own, by key: links to other programs tell of themselves here, JSON-ready."""
         self._events = Events(self)
         self._clock = clock or SystemClock()
         self._inference = default_inference(compiled=compiled)
@@ -303,7 +305,8 @@ class Face(ExpressionCalls, MovementCalls, SpeechCalls, AwaitableTwins):
         targets of those that are set; ``drivers``, the parameters that each channel moves; ``state`` and
         ``liveliness``; ``speech``, null while the face does not speak, else the ``phone``, null in a pause,
         ``ends_in_s`` and how many utterances are ``waiting``; ``gaze_deg``, yaw and pitch; ``frame_ms``, what the last
-        step took; ``messages`` understood; ``errors``, the count of malformed, unknown and rejected ones.
+        step took; ``messages`` understood; ``errors``, the count of malformed, unknown and rejected ones; and what
+        ``reports`` tell.
         """
         emotion, pose = self.channels.emotion, self.pose
         shown = zip(emotion.target, emotion.intensities.tolist(), strict=True)
@@ -325,6 +328,7 @@ class Face(ExpressionCalls, MovementCalls, SpeechCalls, AwaitableTwins):
             "frame_ms": round(self._frame_ms, 3),
             "messages": self.message_counts.messages,
             "errors": dict(self.message_counts.errors),
+            **{name: report() for name, report in self.reports.items()},
         }
 
     def _touch(self) -> None:

@@ -3,7 +3,6 @@ uniform vec3 skin_tone;
 uniform vec3 lip_tint;
 uniform vec3 hair_colour;
 uniform float shine;
-uniform float mouth_front;  // z of the lips at rest
 
 const float HIDDEN = 0.875;   // of the skin, under dense hair
 const vec3 WRAP = vec3(0.27, 0.20, 0.16);  // how far light goes round the terminator, by channel

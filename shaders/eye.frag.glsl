@@ -3,6 +3,7 @@
 #include "shading.glsl"
 #include "noise.glsl"
 #include "develop.glsl"
+#include "eye_paint.glsl"
 centroid in vec3 position, local, local_normal;
 out vec4 colour;
 
@@ -12,12 +13,6 @@ uniform float radius;
 uniform vec3 upper_lid;     // height over x as a parabola, in radii, in the head's axes
 uniform vec3 lower_lid;
 uniform vec2 corners;       // x of the canthi in radii, the smaller first
-uniform vec3 iris_inner, iris_outer;
-uniform float iris_radius, pupil_radius;   // in radii; in radii of the iris
-uniform float dilation;     // the pupil's diameter over that at rest
-uniform vec3 sclera;
-
-const float WIDEST_PUPIL = 0.80;   // in radii of the iris
 const vec3 CARUNCLE = vec3(0.50, 0.21, 0.18);
 
 void main() {
@@ -28,18 +23,9 @@ void main() {
     float depth = sqrt(1.0 - iris_radius * iris_radius) - 0.02;
     vec3 at = local + ray * max((depth - local.z) / min(ray.z, -0.05), 0.0);
     float edge = length(local.xy), ri = length(at.xy) / iris_radius;
-    float on_iris = smoothstep(iris_radius + 0.02, iris_radius - 0.03, edge) * step(0.0, local.z);
+    float on_iris = iris_cover(local);
     vec2 spoke = at.xy / max(length(at.xy), 1e-4);
-    float fibres = 0.45 * noise(vec3(spoke * 2.3, 0.25 * ri)).r + 0.55 * noise(vec3(spoke * 5.3, 0.5 * ri)).g;
-    float pupil = min(pupil_radius * dilation, WIDEST_PUPIL);
-    float collar = exp(-pow((ri - pupil - 0.16) / 0.13, 2.0));   // the collarette, lighter
-    vec3 iris = mix(iris_outer, iris_inner, smoothstep(0.28, 0.70, fibres + 0.10 * collar)) * mix(1.15, 0.70, smoothstep(0.42, 0.95, ri));
-    iris *= (0.85 + 0.30 * collar) * (1.0 - 0.88 * smoothstep(0.72, 1.02, ri));
-    iris *= smoothstep(pupil, pupil + 0.06, ri);
-    float side = length(local.xy);
-    float veins = smoothstep(0.60, 0.72, noise(vec3(local.xy * vec2(0.35, 1.4), 0.3)).g) * smoothstep(0.50, 0.85, side);
-    vec3 white = mix(sclera, sclera * vec3(0.93, 0.66, 0.59), 0.6 * smoothstep(0.45, 0.95, side) + 0.18 * veins);
-    white *= 1.0 - 0.35 * smoothstep(iris_radius + 0.10, iris_radius, edge);
+    vec3 iris = iris_colour(at.xy), white = white_colour(local.xy);
 
     vec3 q = transpose(mat3(head)) * (position - centre) / radius;
     float over = dot(upper_lid, vec3(1.0, q.x, q.x * q.x)) - q.y, under = q.y - dot(lower_lid, vec3(1.0, q.x, q.x * q.x));

@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+import pytest
 from hypothesis import settings
 
 from tests.tools import pytest_make_collect_report, pytest_runtest_makereport  # noqa: F401  # pytest calls them
@@ -7,6 +8,17 @@ from tests.tools import pytest_make_collect_report, pytest_runtest_makereport  #
 # The same examples in every run, and no verdict by the clock: a busy machine fails nothing.
 settings.register_profile("agentface", deadline=None, derandomize=True)
 settings.load_profile("agentface")
+
+
+@pytest.fixture(scope="session", autouse=True)
+def patient_voices():
+    """A voice has as long as it takes: on a busy machine it is late, and no test is about that but those of its end."""
+    from agentface.speech.voices import espeak, flite
+
+    with pytest.MonkeyPatch.context() as patched:
+        for module in (espeak, flite):
+            patched.setattr(module, "TOOL_S", 240.0)
+        yield
 
 
 def pytest_addoption(parser):

@@ -13,14 +13,16 @@ from agentface.cache import cache_folder
 from tests import tools
 
 
-def node_modules(name: str, version: str) -> Path:
-    """The ``node_modules`` folder with this one package, fetched from the registry when it is not there yet.
+def node_modules(name: str, version: str, *beside: str) -> Path:
+    """The ``node_modules`` folder with this package, fetched from the registry when it is not there yet.
+
+    ``beside`` are others that it works with, as ``name@version``.
 
     Where it cannot be had, the test is skipped, which AGENTFACE_REQUIRE_TOOLS=1 makes a failure.
     """
     cache = cache_folder()
     assert cache is not None, "tests run in a home folder"
-    folder = cache / "tests" / f"{name}-{version}"
+    folder = cache / "tests" / "-".join([name, version, *beside]).replace("/", "_")
     modules = folder / "node_modules"
     if not (modules / name / "package.json").is_file():
         tools.require("npm")
@@ -30,7 +32,12 @@ def node_modules(name: str, version: str) -> Path:
             fresh.mkdir()
             command = ["npm", "install", "--no-audit", "--no-fund", "--ignore-scripts", "--prefix", fresh]
             run = subprocess.run(
-                [*command, f"{name}@{version}"], cwd=fresh, capture_output=True, text=True, timeout=200, check=False
+                [*command, f"{name}@{version}", *beside],
+                cwd=fresh,
+                capture_output=True,
+                text=True,
+                timeout=200,
+                check=False,
             )
             if run.returncode:
                 pytest.skip(f"npm could not fetch {name} {version}: {run.stderr}")

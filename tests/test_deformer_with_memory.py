@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import socket
-import threading
+from itertools import count
 
 import numpy as np
 import pytest
@@ -13,6 +12,7 @@ from agentface import Face
 from agentface.cli import cli
 from agentface.live.films import FilmSink
 from agentface.resources import DEFAULT_FACE
+from tests.clocks import ServedClock, send
 from tests.deform import jelly
 from tests.io.osc_bytes import message
 
@@ -80,30 +80,20 @@ def test_play_films_what_it_remembers(tmp_path, filmed):
 
 @pytest.mark.parametrize("later", [False, True], ids=["live", "every-frame"])
 def test_serve_films_what_it_remembers(tmp_path, filmed, later):
-    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
-        probe.bind(("127.0.0.1", 0))
-        port = probe.getsockname()[1]
-    done = threading.Event()
+    waits = count(1)
 
-    def agent():
-        with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as client:
-            number = 0
-            while not done.wait(0.15):
-                number += 1
-                client.sendto(message("/agentface/emotion", "sff", "surprise", number % 2, 0.0), ("127.0.0.1", port))
+    def agent(server):
+        number = next(waits)
+        if number % 3 == 0:
+            send(server, message("/agentface/emotion", "sff", "surprise", number % 2, 0.0))
 
-    thread = threading.Thread(target=agent)
-    thread.start()
-    try:
+    with ServedClock(agent).at_work():
         call(
-            *("serve", "--osc", f"127.0.0.1:{port}", "--record", tmp_path / "a.mp4", "--duration", "1.2"),
+            *("serve", "--osc", "127.0.0.1:0", "--record", tmp_path / "a.mp4", "--duration", "1.17"),
             *("--size", "64x64", "--fps", "20", "--liveliness", "0", *(["--every-frame"] if later else [])),
         )
-    finally:
-        done.set()
-        thread.join()
     assert max(lags(filmed)) > 1e-3
     if later:
-        assert len(filmed) >= 20
+        assert len(filmed) == 24
         for frame, expected in zip(filmed, stepped(filmed, 1 / 20), strict=True):
             np.testing.assert_allclose(frame.geometry.vertices, expected.vertices, atol=1e-7)

@@ -46,6 +46,22 @@ def test_moods(tmp_path):
     assert frames(tmp_path / "moods.mp4") == pytest.approx([frame / 30 for frame in range(15)], abs=1e-4)
 
 
+def test_a_speaker_is_filmed_with_all_of_its_sound(tmp_path):
+    pytest.importorskip("pocketsphinx")
+    said = run("speaker.py", EXAMPLES / "hello.wav", tmp_path / "speaker.mp4", "--size", 96)
+    times = frames(tmp_path / "speaker.mp4")
+    assert times == pytest.approx([frame / 25 for frame in range(len(times))], abs=1e-4)
+    assert f"{len(times)} frames, 4.57 s of sound" in said
+
+
+def test_a_program_uses_the_tools_of_a_face(tmp_path):
+    pytest.importorskip("mcp")
+    said = run("mcp_agent.py", "--view", "none", "--picture", tmp_path / "seen.png")
+    assert size_of(tmp_path / "seen.png") == (512, 512)
+    assert "'happiness': 0.8" in said
+    assert "expected the name of one gesture, got 'wave'" in said
+
+
 def test_make_demo_films_an_agent_in_another_process(tmp_path):
     said = run("make_demo.py", "--out", tmp_path, "--pace", 12, "--mute")
     assert size_of(tmp_path / "expressions.png") == (1920, 1072)
@@ -60,8 +76,9 @@ def test_make_demo_films_an_agent_in_another_process(tmp_path):
 def test_the_agent_tells_what_the_face_says_in_the_end():
     """A face that is slow to start answers all that it was asked meanwhile, and the agent asks once a half second."""
     taken, said = told_to_a_face("--mute", refused="/agentface/emotions", slow=3)
-    assert [address for address, _ in taken].count("/agentface/status") == 4
-    assert len(taken) == 12
+    asked = [address for address, _ in taken].count("/agentface/status")
+    assert asked >= 4, "and oftener where this face is slow to answer later, too"
+    assert len(taken) - asked == 8
     assert "the face took 8 messages" in said
     assert said.count("the face says: /agentface/emotions no really") == 7
 
@@ -85,12 +102,12 @@ def test_without_a_voice_the_agent_lets_the_mouth_say_a_recording():
 
 def told_to_a_face(*arguments: object, refused: str = "", slow: int = 1) -> tuple[list[tuple[str, list]], str]:
     """What the agent tells a face, and what it prints; the face speaks for two questions after it is told to."""
-    agent = ["osc_agent.py", "--wait", 20, "--pace", 50, *arguments, "--osc"]
+    agent = ["osc_agent.py", "--wait", 200, "--pace", 50, *arguments, "--osc"]
     taken: list[tuple[str, list]] = []
     speaks = 0
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as face, ThreadPoolExecutor() as pool:
         face.bind(("127.0.0.1", 0))
-        face.settimeout(60)
+        face.settimeout(200)
         said = pool.submit(run, *agent, f"127.0.0.1:{face.getsockname()[1]}")
         waiting = [face.recvfrom(8192) for _ in range(slow)]
         while not said.done():

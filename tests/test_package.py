@@ -18,7 +18,7 @@ HEAVY = (
 
 def fresh(program: str) -> str:
     """What a program prints in an interpreter of its own."""
-    run = subprocess.run([sys.executable, "-c", program], check=True, capture_output=True, text=True, timeout=120)
+    run = subprocess.run([sys.executable, "-c", program], check=True, capture_output=True, text=True, timeout=240)
     return run.stdout.strip()
 
 

@@ -24,7 +24,7 @@ from agentface.io.video import VideoWriter
 from agentface.mesh.glb import read_glb, write_glb
 from agentface.resources import face_folder, rules_file
 from agentface.tissue.reading import anatomy_file, read_tissue, tissue_of
-from agentface.view.gl.context import read_source
+from agentface.view.gl.source import read_source
 from tests.heads import head_model
 
 PACKAGE = Path(agentface.__file__).parent

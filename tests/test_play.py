@@ -203,7 +203,7 @@ def without_a_display():
 def test_without_a_display_it_says_how_to_film(short):
     pytest.importorskip("glfw")
     command = [sys.executable, "-m", "agentface", "play", str(short)]
-    done = subprocess.run(command, check=False, capture_output=True, text=True, timeout=120, env=without_a_display())
+    done = subprocess.run(command, check=False, capture_output=True, text=True, timeout=240, env=without_a_display())
     assert done.returncode == 1
     assert "expected a display" in done.stderr
     assert f"agentface play {short} -o FILE.mp4" in done.stderr
@@ -244,6 +244,6 @@ def test_the_window_plays_the_document_and_closes(tmp_path):
         "--camera",
         "profile",
     ]
-    done = subprocess.run(command, check=False, capture_output=True, text=True, timeout=120, env=without_a_display())
+    done = subprocess.run(command, check=False, capture_output=True, text=True, timeout=240, env=without_a_display())
     assert done.returncode == 0, done.stderr
     assert [line for line in done.stdout.splitlines() if "{" in line] == ["{'surprise': 1.0} 0.25", "{} 0.25"]

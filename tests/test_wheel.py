@@ -17,6 +17,7 @@ import pytest
 import agentface
 from agentface.resources import data_folder, face_folder
 from tests.base_mesh import base_mesh
+from tests.tools import PAGE, require_page
 
 pytestmark = pytest.mark.slow
 
@@ -78,6 +79,8 @@ def test_wheel_holds_the_package_and_its_data_and_nothing_else(wheel: Path):
     assert {name.partition("/")[0] for name in names} == TOP
     assert wheel.stat().st_size < 4_000_000
     assert "agentface/py.typed" in names
+    page = {name.removeprefix("agentface/io/web/page/") for name in names if name.startswith("agentface/io/web/page/")}
+    assert page == ({f"dist/{path.name}" for path in PAGE.iterdir()} if PAGE.is_dir() else set())
     shipped = {
         f"agentface/_data/{kind}/{path.relative_to(data_folder(kind)).as_posix()}"
         for kind in ("regions", "rules", "shaders")
@@ -88,6 +91,17 @@ def test_wheel_holds_the_package_and_its_data_and_nothing_else(wheel: Path):
     assert {"agentface/_data/regions/amber/head.glb", "agentface/_data/rules/emotions.yaml"} <= shipped
     assert {f"agentface/_data/regions/{place}tissue.yaml" for place in ("", "amber/", "onyx/")} <= shipped
     assert any(name.endswith(".dist-info/licenses/LICENSE") for name in names)
+
+
+def test_wheel_carries_the_page_with_its_licences(wheel: Path):
+    require_page()
+    with ZipFile(wheel) as archive:
+        bundle, licences = (
+            archive.read(f"agentface/io/web/page/dist/{name}").decode() for name in ("agentface.js", "licences.txt")
+        )
+    assert "agent-face" in bundle
+    assert "three 0." in licences
+    assert "Permission is hereby granted" in licences
 
 
 def test_wheel_built_from_the_source_archive_is_the_same(wheel: Path, tmp_path: Path):

@@ -11,8 +11,11 @@ import shutil
 import subprocess
 import sys
 from collections.abc import Generator
+from pathlib import Path
 
 import pytest
+
+import agentface
 
 PACKAGES = {
     "xvfb-run": "xvfb",
@@ -24,10 +27,15 @@ PACKAGES = {
     "node": "nodejs",
     "npm": "npm",
     "flite": "flite",
+    "chromium": "chromium",
+    "blender": "blender",
 }
 """The Debian packages in which the programs are; the Makefile installs them."""
 LIBRARIES = {"libespeak-ng.so.1": "libespeak-ng1"}
 """Likewise the libraries."""
+
+
+PAGE = Path(agentface.__file__).parent / "io" / "web" / "page" / "dist"
 
 
 def strict() -> bool:
@@ -45,6 +53,12 @@ def require_library(name: str) -> None:
     load = [sys.executable, "-I", "-S", "-c", f"import ctypes; ctypes.CDLL({name!r})"]
     there = subprocess.run(load, check=False, capture_output=True).returncode == 0
     _require_none([] if there else [name], LIBRARIES)
+
+
+def require_page() -> None:
+    """Likewise for the page of ``agentface/io/web``, which ``make page`` builds."""
+    if not (PAGE / "agentface.js").is_file():
+        (pytest.fail if strict() else pytest.skip)(f"not built: {PAGE}; make page builds it")
 
 
 def _require_none(missing: list[str], packaged: dict[str, str]) -> None:

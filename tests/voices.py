@@ -10,7 +10,7 @@ from agentface import Face
 from agentface.errors import SpeechError
 from agentface.speech.phones import Phone
 from agentface.speech.sound import Sound
-from agentface.speech.speaker import Speaker
+from agentface.speech.synthesizer import Synthesizer
 from agentface.speech.voices.voice import Voiced
 from agentface.talk.talker import Talker
 from tests.heads import head_model
@@ -31,7 +31,7 @@ class FakeVoice:
         self.go.set()
 
     def speak(self, sentence, rate=1.0, marks=()):
-        assert self.go.wait(20)
+        assert self.go.wait(200)
         if sentence.startswith("Bad"):
             raise SpeechError("no")
         if sentence.startswith("Worse"):
@@ -79,6 +79,6 @@ def talking_face(voice=None, model=None, **options):
     """A face with such a voice, whose skin stays as it is."""
     face, voice = Face(model or head_model(), compiled=False, **options), voice or FakeVoice()
     face.take_deformer(Still(face.deformer, face.pose))
-    face._agendas.talker = Talker(face, Speaker(lambda *_: voice))
+    face._agendas.talker = Talker(face, Synthesizer(lambda *_: voice))
     face.noted.append(face._agendas.talker.notice)
     return face

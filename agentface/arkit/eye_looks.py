@@ -37,6 +37,11 @@ class EyeLooks:
     def __init__(self, model: HeadModel) -> None:
         self._eyes = eyeballs.prepare(model)
 
+    @property
+    def limits(self) -> tuple[float, float]:
+        """Half the width and half the height of the eye hole, in radians."""
+        return self._eyes.yaw_limit, self._eyes.pitch_limit
+
     def apply(self, weights: Doubles, named: Flags, values: Floats) -> None:
         """Set gaze in ``values (COUNT,)`` by ``weights (52,)``, of which ``named (52,)`` are given.
 

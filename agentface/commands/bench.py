@@ -18,9 +18,10 @@ from agentface.commands.options import face_options, json_option, write_json
 def bench(*, name: str | None, volume: bool, json_file: str | None, face: str, deformer: str) -> None:
     """Run one benchmark, or all.
 
-    They are deform, fuzzy, papers, frame, motion, latency, crowd, render, start, tissue, mpeg4, arkit and texture. Of
-    all of them, those that draw are left out, and said to be, on a machine without OpenGL. The laws that the mouth
-    keeps while it speaks take an hour, and are measured when asked for alone: speech.
+    They are deform, fuzzy, papers, frame, motion, latency, crowd, render, start, tissue, mpeg4, arkit, web and
+    texture. Of all of them, those that draw are left out, and said to be, on a machine without OpenGL, and web without
+    its extra. The laws that the mouth keeps while it speaks take an hour, and are measured when asked for alone:
+    speech.
     """
     from agentface.deform.protocol import check_deformer
     from agentface.errors import UnknownNameError
@@ -55,11 +56,11 @@ def _measured(name: str, face: str, deformer: str) -> dict[str, Any]:
 
 
 def _if_it_can(name: str, face: str, deformer: str) -> dict[str, Any]:
-    from agentface.errors import GraphicsError
+    from agentface.errors import GraphicsError, ServerError
 
     try:
         return _measured(name, face, deformer)
-    except GraphicsError as error:
+    except (GraphicsError, ServerError) as error:
         return {"not_run": " ".join(str(error).split())}
 
 

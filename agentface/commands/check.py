@@ -125,6 +125,7 @@ def _rule_readers() -> dict[str, _Loader]:
     from agentface.mpeg4.fap_table import load_faps
     from agentface.speech.alphabets import load_phones
     from agentface.speech.visemes import load_visemes
+    from agentface.vrm.expressions import load_expressions
 
     return {
         "emotions.yaml": load_emotions,
@@ -140,6 +141,7 @@ def _rule_readers() -> dict[str, _Loader]:
         "life.yaml": load_life,
         "visemes.yaml": load_visemes,
         "vocabularies.yaml": load_vocabularies,
+        "vrm.yaml": load_expressions,
     }
 
 

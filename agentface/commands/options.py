@@ -78,6 +78,11 @@ def address(_: click.Context, __: click.Parameter, value: str) -> tuple[str, int
     return host.strip("[]"), int(port)
 
 
+def optional_address(ctx: click.Context, option: click.Parameter, value: str | None) -> tuple[str, int] | None:
+    """``HOST:PORT``, or nothing."""
+    return None if value is None else address(ctx, option, value)
+
+
 AskedUnit: TypeAlias = tuple[str, str | float, str | None]
 """An action unit's number, its intensity or letter, its side."""
 
@@ -185,7 +190,7 @@ def make_face(
     """
     from agentface.face import Face
 
-    with _wait_told(face, compiled=compiled):
+    with wait_told(face, compiled=compiled):
         made = Face(face, deformer=deformer, compiled=compiled, look=look, liveliness=liveliness, seed=seed)
         if running:
             made.warm_up()
@@ -193,7 +198,8 @@ def make_face(
 
 
 @contextmanager
-def _wait_told(face: str, *, compiled: bool) -> Iterator[None]:
+def wait_told(face: str, *, compiled: bool) -> Iterator[None]:
+    """Have a terminal told that kernels are compiled in the block, the first time on a machine."""
     terminal = console()
     if not terminal.is_terminal:
         yield

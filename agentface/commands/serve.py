@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from contextlib import ExitStack, contextmanager
+from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -12,6 +13,7 @@ import click
 
 from agentface.commands.ending import Ending, until_told
 from agentface.commands.film import Shot
+from agentface.commands.links import Links
 from agentface.commands.options import (
     address,
     camera_option,
@@ -23,7 +25,9 @@ from agentface.commands.options import (
     make_face,
     size_option,
 )
+from agentface.commands.pages import PagesAsked, served_pages, web_options
 from agentface.commands.streams import say, tell
+from agentface.commands.vmc import VmcOptions, check_vmc, vmc_links, vmc_options
 from agentface.resources import DEFAULT_FACE
 
 if TYPE_CHECKING:
@@ -31,6 +35,8 @@ if TYPE_CHECKING:
 
     from agentface.face import Face
     from agentface.io.osc.server import OscServer
+    from agentface.io.web.server import WebServer
+    from agentface.live.loop import Sink, Source
 
 _RECORD = "Film the face; a name like face-%05d.png gives numbered transparent pictures instead."
 
@@ -39,6 +45,8 @@ _RECORD = "Film the face; a name like face-%05d.png gives numbered transparent p
 @click.option(
     "--osc", default="127.0.0.1:7400", callback=address, metavar="HOST:PORT", show_default=True, help="Where to listen."
 )
+@vmc_options
+@web_options
 @click.option("--view", type=click.Choice(["window", "none"]), default="none", show_default=True)
 @click.option("--record", type=click.Path(path_type=Path), metavar="FILE.mp4", help=_RECORD)
 @click.option(
@@ -69,6 +77,8 @@ def serve(
     ctx: click.Context,
     *,
     osc: tuple[str, int],
+    vmc: VmcOptions,
+    pages: PagesAsked | None,
     view: str,
     record: Path | None,
     every_frame: bool,
@@ -90,34 +100,62 @@ def serve(
     \b
     agentface serve --view window
     agentface serve --face amber --id left --face onyx --id right
+    agentface serve --vmc 127.0.0.1:39539 --vmc-in 127.0.0.1:39540
     """  # noqa: D301 - \b is click's mark of lines to keep
-    _check_options(given(ctx), window=view == "window", record=record is not None, several=len(names) > 1)
+    _check_options(given(ctx), window=view == "window", record=bool(record), several=len(names) > 1, web=bool(pages))
     _check_ids(names, ids)
+    check_vmc(given(ctx), vmc)
     from agentface.io.osc.server import OscServer
 
     made = [
         make_face(name, deformer, look=look, running=True, liveliness=liveliness, seed=seed)
         for seed, name in enumerate(names)
     ]
-    faces = _by_id(made, ids)
-    with until_told() as ending, OscServer(faces if ids or len(made) > 1 else made[0], *osc) as server, _heard(faces):
-        if view == "window":
-            _in_a_window(server, faces, ending, look, quality, camera)
-            return
-        rate = fps or (30.0 if record else 60.0)
+    faces = vmc.first(_by_id(made, ids))
+    name = next(iter(faces))
+    rate = fps or (30.0 if record else 60.0)
+    with until_told() as ending, _heard(faces), ExitStack() as stack:
+        ways = _Ways(
+            stack.enter_context(OscServer(faces if ids or len(made) > 1 else made[0], *osc)),
+            stack.enter_context(vmc_links(name, faces[name], vmc)),
+            stack.enter_context(served_pages(faces, pages, deformer, look, rate)),
+        )
         end = duration or math.inf
-        if record is None:
-            _run(server, faces, ending, rate, end)
-            return
-        shot = Shot(record, size, camera, quality or "fast", rate, look, live=True)
-        if every_frame:
-            again = make_face(names[0], deformer, look=look, liveliness=liveliness)
-            _film_later(server, faces, ending, shot, end, again)
+        if view == "window":
+            _in_a_window(ways, faces, ending, look, quality, camera)
+        elif record is None:
+            _run(ways, faces, ending, rate, end)
         else:
-            _film_now(server, faces, ending, shot, end)
+            shot = Shot(record, size, camera, quality or "fast", rate, look, live=True)
+            again = make_face(names[0], deformer, look=look, liveliness=liveliness) if every_frame else None
+            _film(ways, faces, ending, shot, end, again)
 
 
-def _check_options(names: set[str], *, window: bool, record: bool, several: bool) -> None:
+def _film(ways: _Ways, faces: Mapping[str, Face], ending: Ending, shot: Shot, end: float, again: Face | None) -> None:
+    if again is None:
+        _film_now(ways, faces, ending, shot, end)
+    else:
+        _film_later(ways, faces, ending, shot, end, again)
+
+
+@dataclass(frozen=True)
+class _Ways:
+    """How a face is reached, and where its frames go beside what is drawn."""
+
+    osc: OscServer
+    vmc: Links
+    pages: Sequence[WebServer]
+
+    @property
+    def sources(self) -> list[Source]:
+        return [self.osc, *self.vmc.sources, *self.pages]
+
+    @property
+    def sinks(self) -> list[Sink]:
+        return [*self.vmc.sinks, *self.pages]
+
+
+def _check_options(names: set[str], *, window: bool, record: bool, several: bool, web: bool) -> None:
     """Raise UsageError for the first option that would do nothing, or is for one face."""
     for name, goes_with, there in (
         ("record", "one --face", not several),
@@ -128,7 +166,9 @@ def _check_options(names: set[str], *, window: bool, record: bool, several: bool
         ("fps", "--view none", not window),
         ("every_frame", "--record", record),
         ("size", "--record", record),
-        ("look", "--view window or --record", window or record),
+        ("look", "--view window, --record or --web", window or record or web),
+        ("token", "--web", web),
+        ("origins", "--web", web),
         ("quality", "--view window or --record", window or record),
         ("camera", "--view window or --record", window or record),
     ):
@@ -176,9 +216,10 @@ def _heard(faces: Mapping[str, Face]) -> Iterator[None]:
         yield
 
 
-def _announce(faces: Mapping[str, Face], server: OscServer) -> None:
+def _announce(faces: Mapping[str, Face], ways: _Ways) -> None:
     called = [name if name == face.model.name else f"{name} ({face.model.name})" for name, face in faces.items()]
-    say(f"{' and '.join(called)} listen{'s' * (len(called) == 1)} to OSC on {server.host}:{server.port}")
+    say(f"{' and '.join(called)} listen{'s' * (len(called) == 1)} to OSC on {ways.osc.host}:{ways.osc.port}")
+    ways.vmc.announce()
 
 
 def _only(faces: Mapping[str, Face]) -> Face:
@@ -187,25 +228,37 @@ def _only(faces: Mapping[str, Face]) -> Face:
 
 
 def _in_a_window(
-    server: OscServer, faces: Mapping[str, Face], ending: Ending, look: str | None, quality: str | None, camera: str
+    ways: _Ways,
+    faces: Mapping[str, Face],
+    ending: Ending,
+    look: str | None,
+    quality: str | None,
+    camera: str,
 ) -> None:
     from agentface.commands.show import make_window
 
     window = make_window(_only(faces), look=look, quality=quality, camera=camera)
-    _announce(faces, server)
-    window.run([server], stopped=ending.told)
+    _announce(faces, ways)
+    window.run(ways.sources, ways.sinks, stopped=ending.told)
 
 
-def _run(server: OscServer, faces: Mapping[str, Face], ending: Ending, fps: float, duration: float) -> None:
+def _run(
+    ways: _Ways,
+    faces: Mapping[str, Face],
+    ending: Ending,
+    fps: float,
+    duration: float,
+) -> None:
     from agentface.clock import SystemClock
     from agentface.live.loop import run
 
     face, *beside = faces.values()
-    _announce(faces, server)
-    run(face, SystemClock(), [server], fps=fps, duration=duration, stopped=ending.told, beside=beside)
+    _announce(faces, ways)
+    clock, end = SystemClock(), ending.told
+    run(face, clock, ways.sources, ways.sinks, fps=fps, duration=duration, stopped=end, beside=beside)
 
 
-def _film_now(server: OscServer, faces: Mapping[str, Face], ending: Ending, shot: Shot, duration: float) -> None:
+def _film_now(ways: _Ways, faces: Mapping[str, Face], ending: Ending, shot: Shot, duration: float) -> None:
     from agentface.clock import SystemClock
     from agentface.io.video import SOUND_HZ
     from agentface.live.heard import LiveSound
@@ -214,15 +267,21 @@ def _film_now(server: OscServer, faces: Mapping[str, Face], ending: Ending, shot
 
     face, last_s = _only(faces), duration if math.isfinite(duration) else None
     with LiveSound(face, SOUND_HZ) as sound, LiveSink(lambda: shot.open(face.model, last_s, sound)) as film:
-        _announce(faces, server)
-        frames = run(face, SystemClock(), [server], [sound, film], fps=shot.fps, duration=duration, stopped=ending.told)
+        _announce(faces, ways)
+        sinks: list[Sink] = [sound, film, *ways.sinks]
+        frames = run(face, SystemClock(), ways.sources, sinks, fps=shot.fps, duration=duration, stopped=ending.told)
     if film.dropped:
         lost = f"{film.dropped} of {frames} frames are left out, as this machine draws too slowly for them"
         tell(f"{shot.path}: {lost}; --every-frame films all of them")
 
 
 def _film_later(
-    server: OscServer, faces: Mapping[str, Face], ending: Ending, shot: Shot, duration: float, again: Face
+    ways: _Ways,
+    faces: Mapping[str, Face],
+    ending: Ending,
+    shot: Shot,
+    duration: float,
+    again: Face,
 ) -> None:
     """As :func:`_film_now`, but ``again``, a face like the first, goes through it all when it is over.
 
@@ -237,9 +296,10 @@ def _film_later(
     face = _only(faces)
     with shot.open(face.model):
         pass  # what cannot be written or drawn is told before the recording
-    _announce(faces, server)
+    _announce(faces, ways)
     with Recorder(face) as recorder, HeardRecorder(face, recorder, shot.fps) as heard:
-        run(face, SystemClock(), [server], [recorder], fps=shot.fps, duration=duration, stopped=ending.told)
+        sinks: list[Sink] = [recorder, *ways.sinks]
+        run(face, SystemClock(), ways.sources, sinks, fps=shot.fps, duration=duration, stopped=ending.told)
     if recorder.last_s is None:
         return
     ending.go_on()  # told to stop again, it keeps what is drawn

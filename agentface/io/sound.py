@@ -40,13 +40,18 @@ def read_sound(path: str | Path, rate_hz: int = HEARD_HZ) -> Sound:
 
 def write_wav(path: str | Path, sound: Sound) -> None:
     """Write a sound as a WAV file of 16 bits; raises OutputError."""
+    write_file(path, encode_wav(sound))
+
+
+def encode_wav(sound: Sound) -> bytes:
+    """A sound as a WAV file of 16 bits."""
     content = io.BytesIO()
     with wave.open(content, "wb") as file:
         file.setnchannels(1)
         file.setsampwidth(2)
         file.setframerate(sound.rate_hz)
         file.writeframes(sound.samples.astype("<i2").tobytes())
-    write_file(path, content.getvalue())
+    return content.getvalue()
 
 
 def _decoded(path: Path, rate_hz: int) -> bytes:

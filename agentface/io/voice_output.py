@@ -40,7 +40,7 @@ class VoiceOutput:
         self._waiting: list[tuple[float, Sound]] = []
         self._opening: threading.Thread | None = None
         self._silent = False
-        talker.latency_s = BUFFER_S
+        talker.latency_s = max(talker.latency_s, BUFFER_S)
         talker.heard.append(self._hear)
         talker.hushed.append(self._hush)
 
@@ -65,6 +65,7 @@ class VoiceOutput:
         self.close()
 
     def _hear(self, sound: Sound, in_s: float) -> None:
+        in_s += self._talker.latency_s - BUFFER_S  # others may hear it later than the device
         with self._lock:
             if self._silent:
                 return

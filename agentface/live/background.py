@@ -11,7 +11,7 @@ from typing import Self
 
 from agentface.clock import Clock
 from agentface.face import Face
-from agentface.live.loop import Frame, Source, run
+from agentface.live.loop import Frame, Sink, Source, run
 from agentface.live.newest import Mailbox
 
 SLOWEST_HZ = 30.0
@@ -29,6 +29,7 @@ class Background:
         clock: tells the time.
         sources: as in :func:`run`.
         held: kept while the face is asked and stepped.
+        sinks: given each frame, also those that nobody asks for, while ``held`` is kept.
         duration: seconds until it ends by itself.
         longest_step_s: as in :func:`run`.
 
@@ -42,10 +43,12 @@ class Background:
         sources: Sequence[Source],
         held: AbstractContextManager[object],
         *,
+        sinks: Sequence[Sink] = (),
         duration: float = math.inf,
         longest_step_s: float = math.inf,
     ) -> None:
         self._face, self._clock, self._sources, self._held = face, clock, sources, held
+        self._sinks = sinks
         self._duration, self._longest_step_s = duration, longest_step_s
         self._mail, self._passed_over = Mailbox(), 0
         self._asked, self._stop = threading.Event(), threading.Event()
@@ -95,7 +98,7 @@ class Background:
                 self._face,
                 _Asked(self._clock, self._asked),
                 self._sources,
-                [self._mail],
+                [self._mail, *(_Exclusive(sink, self._held) for sink in self._sinks)],
                 duration=self._duration,
                 longest_step_s=self._longest_step_s,
                 stopped=self._stop.is_set,
@@ -105,6 +108,17 @@ class Background:
             self._error = error
         finally:
             self._mail.close()
+
+
+class _Exclusive:
+    """A sink that may look at the face, too."""
+
+    def __init__(self, sink: Sink, held: AbstractContextManager[object]) -> None:
+        self._sink, self._held = sink, held
+
+    def show(self, frame: Frame) -> None:
+        with self._held:
+            self._sink.show(frame)
 
 
 class _Asked:

@@ -14,25 +14,16 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
 from agentface.conventions import Floats, Indices
 from agentface.errors import DataError, Fault, InvalidValueError
+from agentface.mesh.gltf_buffer import CHUNK, COMPONENTS, HEADER, WIDTHS, Array, GltfBuffer
 
-Array = npt.NDArray[Any]
-
-_COMPONENTS: dict[int, type[np.generic]] = {
-    5121: np.uint8, 5123: np.uint16, 5125: np.uint32, 5126: np.float32, 5122: np.int16, 5120: np.int8,
-}  # fmt: skip
-_CODES = {np.dtype(kind): code for code, kind in _COMPONENTS.items()}
-_WIDTHS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4}
-_TYPES = {width: name for name, width in _WIDTHS.items()}
-_ATTRIBUTES = frozenset(_CODES) - {np.dtype(np.uint32)}
-_ARRAY_BUFFER, _ELEMENT_ARRAY_BUFFER = 34962, 34963
 _LARGEST = 64 * 1024 * 1024
+_LARGEST_TEXT = 4 * 1024 * 1024
+_MOST_READ = 4 * _LARGEST
+"""Bytes that a file's accessors may come to: several can be of the same bytes."""
 _LARGEST_STRIDE = 252
-_HEADER = 20
-_CHUNK = 8
 
 
 @dataclass(slots=True)
@@ -69,7 +60,7 @@ def read_glb(path: str | Path) -> dict[str, MeshArrays]:
         return {mesh["name"]: reader.mesh(mesh) for mesh in reader.document["meshes"]}
     except OSError as error:
         raise DataError([Fault(path, None, "", "a readable file", error.strerror or "an error")]) from None
-    except (ValueError, KeyError, IndexError, TypeError, RecursionError, struct.error) as error:
+    except (ArithmeticError, AttributeError, LookupError, RecursionError, TypeError, ValueError, struct.error) as error:
         got = f"{type(error).__name__}: {error}"
         raise DataError([Fault(path, None, "", "a GLB file as agentface writes it", got)]) from error
 
@@ -81,36 +72,50 @@ class _GlbReader:
         magic, version, _, length, kind = struct.unpack_from("<4sIII4s", content)
         if (magic, version, kind) != (b"glTF", 2, b"JSON"):
             raise ValueError("not a binary glTF 2.0 file")
-        self.document: dict[str, Any] = json.loads(content[_HEADER : _HEADER + length])
-        self.blob = content[_HEADER + length + _CHUNK :]
+        if length > _LARGEST_TEXT:
+            raise ValueError(f"a JSON part of {length} bytes, more than {_LARGEST_TEXT}")
+        self.document: dict[str, Any] = json.loads(content[HEADER : HEADER + length])
+        self.blob = content[HEADER + length + CHUNK :]
+        self._read = 0
 
     def rows(self, index: int, offset: int, kind: np.dtype[Any], shape: tuple[int, int]) -> Array:
         """``shape`` components of a view whose rows may be interleaved with others, or padded to four bytes."""
-        view, size = self.document["bufferViews"][index], shape[1] * kind.itemsize
+        view, size = self._view(index), shape[1] * kind.itemsize
         stride, start = view.get("byteStride", size), view.get("byteOffset", 0) + offset
         if stride == size:
             return self.view(index, offset, kind, shape[0] * shape[1]).reshape(shape)
         if not size < stride <= _LARGEST_STRIDE or not 0 <= start <= len(self.blob) - stride * (shape[0] - 1) - size:
             raise ValueError(f"{shape[0]} rows of {stride} bytes in a view of fewer")
+        self._count(shape[0] * size)
         return np.ndarray(shape, kind, self.blob, start, (stride, kind.itemsize)).copy()
 
     def view(self, index: int, offset: int, kind: np.dtype[Any], count: int) -> Array:
-        start = self.document["bufferViews"][index].get("byteOffset", 0)
-        return np.frombuffer(self.blob, kind, count, start + offset)
+        if count < 0 or offset < 0:  # which mean something else to numpy
+            raise ValueError(f"{count} components from byte {offset} on")
+        self._count(count * kind.itemsize)
+        return np.frombuffer(self.blob, kind, count, self._view(index).get("byteOffset", 0) + offset)
+
+    def _count(self, size: int) -> None:
+        self._read += size
+        if self._read > _MOST_READ:
+            raise ValueError(f"accessors of more than {_MOST_READ} bytes")
+
+    def _view(self, index: int) -> dict[str, Any]:
+        return _piece(self.document["bufferViews"], index)
 
     def accessor(self, index: int) -> Array:
-        row = self.document["accessors"][index]
-        width, kind = _WIDTHS[row["type"]], np.dtype(_COMPONENTS[row["componentType"]])
+        row = _piece(self.document["accessors"], index)
+        width, kind = WIDTHS[row["type"]], np.dtype(COMPONENTS[row["componentType"]])
         found = self.rows(row["bufferView"], row.get("byteOffset", 0), kind, (row["count"], width))
         return found if width > 1 else found[:, 0]
 
     def shape(self, index: int) -> Shape:
-        row = self.document["accessors"][index]
+        row = _piece(self.document["accessors"], index)
         if "sparse" not in row:
             return Shape(np.zeros(0, np.int32), np.zeros((0, 3), np.float32))
         sparse = row["sparse"]
         where, values = sparse["indices"], sparse["values"]
-        kind = np.dtype(_COMPONENTS[where["componentType"]])
+        kind = np.dtype(COMPONENTS[where["componentType"]])
         indices = self.view(where["bufferView"], where.get("byteOffset", 0), kind, sparse["count"])
         if len(indices) and not 0 <= indices.min() <= indices.max() < row["count"]:
             raise ValueError(f"a morph target of {row['count']} vertices that moves vertex {indices.max()}")
@@ -127,6 +132,12 @@ class _GlbReader:
             dict(zip(extras.get("targetNames", []), targets, strict=True)),
             extras,
         )
+
+
+def _piece(pieces: list[dict[str, Any]], index: int) -> dict[str, Any]:
+    if not 0 <= index < len(pieces):  # -1 means another one to Python
+        raise IndexError(f"number {index} of {len(pieces)}")
+    return pieces[index]
 
 
 def texture_coordinates(mesh: MeshArrays) -> Floats | None:
@@ -155,87 +166,25 @@ def encode_glb(meshes: Mapping[str, MeshArrays], copyright_line: str) -> bytes:
     return writer.content()
 
 
-class _Writer:
+class _Writer(GltfBuffer):
+    """The meshes of an asset, a node each."""
+
     def __init__(self, copyright_line: str) -> None:
-        self.blob = bytearray()
-        self.accessors: list[dict[str, Any]] = []
-        self.views: list[dict[str, Any]] = []
+        super().__init__()
         self.meshes: list[dict[str, Any]] = []
         self.asset = {"version": "2.0", "generator": "agentface", "copyright": copyright_line}
 
     def content(self) -> bytes:
         nodes = [{"mesh": number, "name": mesh["name"]} for number, mesh in enumerate(self.meshes)]
-        document = {
-            "asset": self.asset,
-            "scene": 0,
-            "scenes": [{"nodes": list(range(len(nodes)))}],
-            "nodes": nodes,
-            "meshes": self.meshes,
-            "accessors": self.accessors,
-            "bufferViews": self.views,
-            "buffers": [{"byteLength": len(self.blob)}],
-        }
-        text = json.dumps(document, separators=(",", ":"), ensure_ascii=False, allow_nan=False).encode()
-        text += b" " * (-len(text) % 4)
-        binary = bytes(self.blob)
-        size = _HEADER + len(text) + _CHUNK + len(binary)
-        header = struct.pack("<4sIII4s", b"glTF", 2, size, len(text), b"JSON")
-        return header + text + struct.pack("<I4s", len(binary), b"BIN\0") + binary
-
-    def view(self, array: Array, **properties: int) -> int:
-        raw = np.ascontiguousarray(array).tobytes()
-        self.views.append({"buffer": 0, "byteOffset": len(self.blob), "byteLength": len(raw), **properties})
-        self.blob += raw + b"\0" * (-len(raw) % 4)
-        return len(self.views) - 1
-
-    def accessor(self, **properties: Any) -> int:
-        self.accessors.append(properties)
-        return len(self.accessors) - 1
-
-    def attribute(self, name: str, array: Array) -> int:
-        width = 1 if array.ndim == 1 else array.shape[-1]
-        if array.ndim > 2 or width not in _TYPES or array.dtype not in _ATTRIBUTES or not len(array):
-            expected = "rows of one to four float32, or whole numbers of 8 or 16 bits"
-            raise InvalidValueError(name, expected, f"{array.dtype} of shape {array.shape}")
-        rows = array.reshape(len(array), width)
-        size = width * array.itemsize
-        stride = size + -size % 4  # every vertex begins at a multiple of four bytes
-        padded = np.zeros((len(rows), stride), np.uint8)
-        padded[:, :size] = np.ascontiguousarray(rows).view(np.uint8)
-        strided = {} if stride == size else {"byteStride": stride}
-        properties: dict[str, Any] = {"bufferView": self.view(padded, target=_ARRAY_BUFFER, **strided)}
-        properties |= {"componentType": _CODES[array.dtype], "count": len(array), "type": _TYPES[width]}
-        if array.dtype in (np.uint8, np.uint16) and width > 1:
-            properties["normalized"] = True
-        if name == "POSITION":
-            properties |= _bounds(array)
-        return self.accessor(**properties)
-
-    def triangles(self, triangles: Indices, vertices: int) -> int:
-        if not len(triangles) or not 0 <= triangles.min() <= triangles.max() < vertices:
-            got = f"{triangles.min()} to {triangles.max()}" if len(triangles) else "no triangle"
-            raise InvalidValueError("triangles", f"vertices in 0..{vertices - 1}", got)
-        # the largest number of a type restarts a strip
-        kind = np.dtype(np.uint16 if triangles.max() < np.iinfo(np.uint16).max else np.uint32)
-        view = self.view(triangles.astype(kind).ravel(), target=_ELEMENT_ARRAY_BUFFER)
-        return self.accessor(bufferView=view, componentType=_CODES[kind], count=triangles.size, type="SCALAR")
-
-    def target(self, name: str, shape: Shape, vertices: int) -> dict[str, int]:
-        indices, offsets = shape.indices, shape.offsets.astype(np.float32)
-        properties = {"componentType": _CODES[offsets.dtype], "count": vertices, "type": "VEC3"}
-        if not len(indices):
-            zero = np.zeros((1, 3), np.float32)
-            return {"POSITION": self.accessor(**properties, **_bounds(zero))}
-        if not 0 <= indices[0] <= indices[-1] < vertices or (np.diff(indices) <= 0).any():
-            raise InvalidValueError(f"shape {name}", f"rising vertices in 0..{vertices - 1}", "others")
-        kind = np.dtype(np.uint16 if indices[-1] <= np.iinfo(np.uint16).max else np.uint32)
-        properties["sparse"] = {
-            "count": len(indices),
-            "indices": {"bufferView": self.view(indices.astype(kind)), "componentType": _CODES[kind]},
-            "values": {"bufferView": self.view(offsets)},
-        }
-        at_rest = np.zeros((int(len(indices) < vertices), 3), np.float32)
-        return {"POSITION": self.accessor(**properties, **_bounds(np.concatenate([offsets, at_rest])))}
+        return self.binary(
+            {
+                "asset": self.asset,
+                "scene": 0,
+                "scenes": [{"nodes": list(range(len(nodes)))}],
+                "nodes": nodes,
+                "meshes": self.meshes,
+            }
+        )
 
     def mesh(self, name: str, mesh: MeshArrays) -> None:
         vertices = len(mesh.attributes["POSITION"])
@@ -248,10 +197,9 @@ class _Writer:
         }
         extras = dict(mesh.extras)
         if mesh.shapes:
-            primitive["targets"] = [self.target(key, shape, vertices) for key, shape in mesh.shapes.items()]
+            primitive["targets"] = [
+                {"POSITION": self.sparse(f"shape {key}", shape.indices, shape.offsets, vertices)}
+                for key, shape in mesh.shapes.items()
+            ]
             extras["targetNames"] = list(mesh.shapes)
         self.meshes.append({"name": name, "primitives": [primitive], **({"extras": extras} if extras else {})})
-
-
-def _bounds(rows: Array) -> dict[str, list[float]]:
-    return {"min": rows.min(0).tolist(), "max": rows.max(0).tolist()}

@@ -20,7 +20,7 @@ from agentface.parameters import GROUPS, MUSCLES, Way, parameter
 from agentface.resources import rules_file
 
 CHANNELS = (
-    *("emotion", "gaze", "head", "action_units", "performance", "faps", "arkit", "speech"),
+    *("emotion", "gaze", "head", "action_units", "performance", "faps", "arkit", "tracker", "speech"),
     *("life", "gestures", "blink", "muscles"),
 )
 """The face's own channels; a program adds others."""

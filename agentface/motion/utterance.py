@@ -16,7 +16,7 @@ _KEPT_S = 3.0
 """Of a live utterance, phones that ended so long ago are forgotten: nothing shows them any more."""
 
 _SHORTEST_S = 1e-3
-"""No utterance is over as soon as it begins."""
+"""No utterance is over as soon as it begins, and what begins so much earlier begins at the same time."""
 
 
 class Utterance:
@@ -92,7 +92,7 @@ class Utterance:
         kept = [
             (replace(phone, end_s=min(phone.end_s, first)), look)
             for phone, look in zip(self._phones, self._looks, strict=True)
-            if phone.start_s < first and phone.end_s > time - _KEPT_S
+            if phone.start_s < first - _SHORTEST_S and phone.end_s > time - _KEPT_S  # what begins with it is revised
         ]
         self._phones = [*(phone for phone, _ in kept), *fresh]
         self._looks = [*(look for _, look in kept), *looks]

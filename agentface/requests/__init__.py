@@ -21,6 +21,7 @@ from agentface.requests.performance import Play
 from agentface.requests.request import FADE_S, Movable, Request
 from agentface.requests.say import Say
 from agentface.requests.speech import Hush, ShowViseme, Speak, TakeBack
+from agentface.requests.tracked import SetTracked
 from agentface.requests.turn import GAZE_FADE_S, HEAD_FADE_S, LookAt, SetGaze, SetHead
 
 __all__ = [
@@ -50,6 +51,7 @@ __all__ = [
     "SetMuscle",
     "SetParameter",
     "SetState",
+    "SetTracked",
     "ShowViseme",
     "Speak",
     "TakeBack",

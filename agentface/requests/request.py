@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from agentface.head.model import HeadModel
     from agentface.motion.doing import Doing
     from agentface.motion.mixer import Mixer
-    from agentface.speech.speaker import Order
+    from agentface.speech.synthesizer import Order
 
 FADE_S = 0.25
 """What an emotion or a muscle takes to come, unless a request says otherwise."""

@@ -10,7 +10,7 @@ from agentface.errors import InvalidValueError, UnknownNameError
 from agentface.motion.doing import Doing
 from agentface.requests.request import Movable, Request
 from agentface.speech.script import Script
-from agentface.speech.speaker import Order
+from agentface.speech.synthesizer import Order
 from agentface.speech.voices.choose import ENGLISH, check_voice
 from agentface.speech.voices.voice import check_speech_rate
 

@@ -9,23 +9,15 @@ from typing import Any
 
 import numpy as np
 
-from agentface.errors import InvalidValueError, SpeechError
+from agentface.errors import InvalidValueError
 from agentface.speech.phones import Phone
+from agentface.speech.recognizer import FRAME_S, HEARD_HZ, QUIET, heard_parts, is_filler, open_recognizer
 from agentface.speech.sound import Sound
 from agentface.speech.voices.voice import SILENCE, Voiced, word_start
 
-HEARD_HZ = 16_000
-_FRAME_S = 0.01
 _PHONES = "AA AE AH AO AW AY B CH D DH EH ER EY F G HH IH IY JH K L M N NG OW OY P R S SH T TH UH UW V W Y Z ZH"
 _MOST_WORDS = 2000
-_LOOP = {"lw": 1.0, "beam": 1e-30, "pbeam": 1e-30}
-"""What it expects of the order of phones counts little beside what it hears, and it drops no path early: with its own
-values, which are for words, it hears half as many lips that close."""
 _SHORTEST_S = 0.1
-_QUIET = 30.0
-"""Root mean square of 16 bits: what is not louder is no speech, whatever the recogniser makes of it."""
-_NO_POCKETSPHINX = """expected the Python package pocketsphinx, got none; it hears what is said in a recording.
-Install the extra that has it:  pip install "agentface[speech]\""""
 
 Pronounce = Callable[[str], Iterable[str]]
 """The phones of a word, in ARPAbet; raises SpeechError or InvalidValueError."""
@@ -37,10 +29,9 @@ def heard(sound: Sound) -> Voiced:
     Raises SpeechError where there is no pocketsphinx, InvalidValueError for another rate.
     """
     _check(sound)
-    decoder = _decoder(allphone=True)
+    decoder = open_recognizer(phone_loop=True)
     _listen(decoder, sound)
-    found = [(part.word, part.start_frame, part.end_frame + 1) for part in decoder.seg() or ()]
-    return Voiced(sound, _phones(found, sound))
+    return Voiced(sound, _phones(heard_parts(decoder), sound))
 
 
 def aligned(sound: Sound, text: str, pronounce: Pronounce, marks: Sequence[int] = ()) -> Voiced:
@@ -55,7 +46,7 @@ def aligned(sound: Sound, text: str, pronounce: Pronounce, marks: Sequence[int] 
     Raises SpeechError where there is no pocketsphinx, InvalidValueError for a text that is not what is heard.
     """
     _check(sound)
-    decoder = _decoder(allphone=False)
+    decoder = open_recognizer(phone_loop=False)
     words = [word for word in re.finditer(r"\S+", text) if any(map(str.isalnum, word[0]))][: _MOST_WORDS + 1]
     if not 0 < len(words) <= _MOST_WORDS:
         raise InvalidValueError("text", f"one to {_MOST_WORDS} words", len(words))
@@ -69,13 +60,13 @@ def aligned(sound: Sound, text: str, pronounce: Pronounce, marks: Sequence[int] 
     told = [
         (w.name, w.start, w.duration, [(p.name, p.start, p.duration) for p in w]) for w in decoder.get_alignment() or ()
     ]
-    found = [word for word in told if not _filler(word[0])]
+    found = [word for word in told if not is_filler(word[0])]
     if len(found) != len(words):
         raise _not_heard(text)
     parts = [(name, start, start + count) for word in found for name, start, count in word[3]]
     befores = [word_start(text, mark) for mark in marks]
-    starts = [(word.end(), spoken[1] * _FRAME_S) for word, spoken in zip(words, found, strict=True)]
-    end = min((found[-1][1] + found[-1][2]) * _FRAME_S, sound.duration_s)
+    starts = [(word.end(), spoken[1] * FRAME_S) for word, spoken in zip(words, found, strict=True)]
+    end = min((found[-1][1] + found[-1][2]) * FRAME_S, sound.duration_s)
     times = (next((at for until, at in starts if until > before), end) for before in befores)
     return Voiced(sound, _phones(parts, sound), tuple(times))
 
@@ -85,20 +76,6 @@ def _check(sound: Sound) -> None:
         raise InvalidValueError("sound", f"at least {_SHORTEST_S:g} s", f"{sound.duration_s:g} s")
     if sound.rate_hz != HEARD_HZ:
         raise InvalidValueError("sound rate", f"{HEARD_HZ} samples a second", sound.rate_hz)
-
-
-def _decoder(*, allphone: bool) -> Any:
-    try:
-        from pocketsphinx import Decoder, get_model_path
-    except ImportError as error:
-        raise SpeechError(_NO_POCKETSPHINX) from error
-    try:
-        if allphone:
-            model = get_model_path("en-us/en-us-phone.lm.bin")
-            return Decoder(allphone=model, lm=None, loglevel="FATAL", **_LOOP)
-        return Decoder(lm=None, loglevel="FATAL")
-    except (RuntimeError, ValueError) as error:
-        raise SpeechError(f"expected pocketsphinx to load its model, got: {error}") from error
 
 
 def _listen(decoder: Any, sound: Sound) -> None:
@@ -126,17 +103,13 @@ def _cmu(phone: str) -> str:
     )
 
 
-def _filler(name: str) -> bool:
-    return name == "SIL" or name[:1] in ("<", "[", "+")
-
-
 def _phones(parts: Sequence[tuple[str, int, int]], sound: Sound) -> tuple[Phone, ...]:
     """Phones without gaps over the whole sound of parts by frame."""
     end = sound.duration_s
     phones: list[Phone] = []
     for name, first, last in parts:
-        start_s, end_s = min(first * _FRAME_S, end), min(last * _FRAME_S, end)
-        if end_s > start_s and not _filler(name) and _loudness(sound, start_s, end_s) > _QUIET:
+        start_s, end_s = min(first * FRAME_S, end), min(last * FRAME_S, end)
+        if end_s > start_s and not is_filler(name) and _loudness(sound, start_s, end_s) > QUIET:
             phones.append(Phone(name, start_s, end_s))
     edges = [0.0, *(edge for phone in phones for edge in (phone.start_s, phone.end_s)), end]
     gaps = [(a, b) for a, b in pairwise(edges) if b > a]

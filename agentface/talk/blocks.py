@@ -17,8 +17,8 @@ from agentface.bml.timetable import Timetable, schedule
 from agentface.errors import AgentFaceError, InvalidValueError
 from agentface.motion.doing import Doing
 from agentface.requests import Hush, Neutral, Request, SetEmotion, SetEmotions
-from agentface.speech.speaker import Done, Order, Speaker
 from agentface.speech.spoken import Spoken, joined
+from agentface.speech.synthesizer import Done, Order, Synthesizer
 from agentface.talk.block_speech import performed, script_of_speech
 from agentface.talk.staging import Staged, Staging
 from agentface.talk.talker import LEAD_S
@@ -106,9 +106,9 @@ class BlockPlayer:
         error: what went wrong last; None before anything has.
     """
 
-    def __init__(self, face: BlockFace, speaker: Speaker | None = None) -> None:
+    def __init__(self, face: BlockFace, synthesizer: Synthesizer | None = None) -> None:
         self._face: BlockFace = weakref.proxy(face)
-        self._speaker = speaker or Speaker()
+        self._synthesizer = synthesizer or Synthesizer()
         self.told: list[Callable[[Progress], object]] = []
         self.failed: list[Callable[[str, AgentFaceError], object]] = []
         self.error: AgentFaceError | None = None
@@ -121,7 +121,7 @@ class BlockPlayer:
         self._runs: list[_Run] = []
         self._over: dict[str, _Run] = {}
         self._orders: list[tuple[Order, _Waiting, str]] = []
-        weakref.finalize(self, self._speaker.close)
+        weakref.finalize(self, self._synthesizer.close)
 
     @property
     def blocks(self) -> tuple[str, ...]:
@@ -145,7 +145,7 @@ class BlockPlayer:
                 order = Order(script_of_speech(behavior.does))
                 waiting.missing += 1
                 self._orders.append((order, waiting, behavior.id))
-                self._speaker.ask(order)
+                self._synthesizer.ask(order)
         if block.speeches:
             self._face.talker  # noqa: B018  # made now, so that it is stepped with the face from here on
         self._waiting.append(waiting)
@@ -153,12 +153,12 @@ class BlockPlayer:
 
     def wait(self) -> None:
         """Until everything is spoken that blocks say: nothing is late then, however the face is stepped."""
-        self._speaker.wait()
+        self._synthesizer.wait()
 
     def advance(self, dt: float) -> None:
         """Let ``dt`` seconds pass, at most ``due_s`` for what is then to be in its time; 0 begins what is ready."""
         self._now += dt
-        while (done := self._speaker.take()) is not None:
+        while (done := self._synthesizer.take()) is not None:
             self._take(done)
         for run in [run for run in self._runs if run.doing.outcome is not None]:
             self._take_back(run)
@@ -175,7 +175,7 @@ class BlockPlayer:
     def stop(self, fade: float | None = None) -> None:
         """End what plays within ``fade`` seconds, and drop what waits; the usual time when None."""
         self._drop(tuple(self._waiting))
-        self._speaker.drop()
+        self._synthesizer.drop()
         self._stop_runs(bml_table().let_go_s if fade is None else fade)
 
     def notice(self, request: Request) -> None:
@@ -193,7 +193,7 @@ class BlockPlayer:
 
     def close(self) -> None:
         """End the voices."""
-        self._speaker.close()
+        self._synthesizer.close()
 
     def _take(self, done: Done) -> None:
         place = next((place for place, each in enumerate(self._orders) if each[0] is done.order), None)

@@ -17,8 +17,8 @@ from agentface.errors import AgentFaceError, InvalidValueError
 from agentface.motion.doing import Doing
 from agentface.requests import Hush, Neutral, Request, SetEmotion, SetEmotions, Speak
 from agentface.speech.sound import Sound
-from agentface.speech.speaker import Done, Order, Speaker
 from agentface.speech.spoken import Spoken
+from agentface.speech.synthesizer import Done, Order, Synthesizer
 from agentface.speech.tags import Tag
 
 MOST_TEXTS = 64
@@ -101,9 +101,9 @@ class Talker:
         latency_s: how much later than it is given to ``heard`` a sound is heard.
     """
 
-    def __init__(self, face: Talking, speaker: Speaker | None = None) -> None:
+    def __init__(self, face: Talking, synthesizer: Synthesizer | None = None) -> None:
         self._face: Talking = weakref.proxy(face)
-        self._speaker = speaker or Speaker()
+        self._synthesizer = synthesizer or Synthesizer()
         self.heard: list[Callable[[Sound, float], object]] = []
         self.hushed: list[Callable[[], object]] = []
         self.ended: list[Callable[[str], object]] = []
@@ -118,7 +118,7 @@ class Talker:
         self._texts: deque[_Said] = deque()
         self._interrupt = self._own = False
         self._before: dict[str, float] = {}
-        weakref.finalize(self, self._speaker.close)
+        weakref.finalize(self, self._synthesizer.close)
 
     @property
     def texts(self) -> tuple[str, ...]:
@@ -127,7 +127,7 @@ class Talker:
 
     @property
     def now_s(self) -> float:
-        """The seconds that have passed."""
+        """Its time: the sum of what :meth:`advance` was given, in seconds."""
         return self._now
 
     @property
@@ -161,7 +161,7 @@ class Talker:
     def wait(self) -> None:
         """Until all sentences are spoken that were asked for: nothing is late then, however the face is stepped."""
         self._pass_on()
-        self._speaker.wait()
+        self._synthesizer.wait()
 
     def advance(self, dt: float) -> None:
         """Let ``dt`` seconds pass, at most ``due_s`` for what is then to be in its time; 0 begins what is ready."""
@@ -169,7 +169,7 @@ class Talker:
         self._pass_on()
         while self._events and self._events[0][0] <= self._now + _SAME_S:
             heappop(self._events)[2]()
-        while (done := self._speaker.take()) is not None:
+        while (done := self._synthesizer.take()) is not None:
             self._take(done)
         while self._turns and self._free <= self._now + LEAD_S + _SAME_S:
             if not self._turns[0].interrupt and self._others_speak():
@@ -192,7 +192,7 @@ class Talker:
 
     def stop(self) -> None:
         """Say nothing more; the mouth is told apart."""
-        self._speaker.drop()
+        self._synthesizer.drop()
         self._orders.clear()
         self._turns.clear()
         self._events.clear()
@@ -206,11 +206,11 @@ class Talker:
 
     def close(self) -> None:
         """End the voices."""
-        self._speaker.close()
+        self._synthesizer.close()
 
     def _pass_on(self) -> None:
         while self._orders:
-            self._speaker.ask(self._orders.popleft())
+            self._synthesizer.ask(self._orders.popleft())
 
     def _admit(self, text: str, order: Order | None, interrupt: bool) -> _Said:
         if not interrupt and len(self._texts) >= MOST_TEXTS:

@@ -9,41 +9,38 @@ from typing import Any, Self
 
 import numpy as np
 
-from agentface.cache import stamp_of
 from agentface.conventions import SIDES, Bytes, Floats
 from agentface.deform.geometry import FaceGeometry
 from agentface.head.look import Look, load_look
 from agentface.head.model import HeadModel
 from agentface.head.skin_image import skin_texture
 from agentface.view.camera import Camera, named_view
+from agentface.view.dressing import (
+    SOFTNESSES,
+    dressed_skin,
+    fine_lips,
+    grown_hair,
+    irregularities,
+    pores,
+)
 from agentface.view.gl.context import LostContextCheck, finish, shader_names
-from agentface.view.gl.noise import SIDE, noise_volume
 from agentface.view.gl.ownership import Ownership
 from agentface.view.gl.programs import FRAME_BINDING, Programs
 from agentface.view.gl.quality import quality_named
 from agentface.view.gl.shadow import KeyShadow
 from agentface.view.gl.targets import Targets, checked_size
 from agentface.view.gl.uniforms import pack_frame, pixels_a_metre, shadow_projection, unit
-from agentface.view.hair.brows import BrowLine, brow_hairs, lash_hairs
-from agentface.view.hair.hairline import Hairline, hair_shade, hidden
 from agentface.view.hair.head_hair import HeadHair
 from agentface.view.hair.ribbons import HairArray
 from agentface.view.parts.anchored import AnchoredArray, eye_linings
 from agentface.view.parts.bone import Bone, BoneView
 from agentface.view.parts.mouth import Mouth
-from agentface.view.parts.rigid import Eyeball, RigidPart
-from agentface.view.skin import pores
-from agentface.view.skin.complexion import complexion, folds
-from agentface.view.skin.fine_lips import FineLips
+from agentface.view.parts.rigid import IRIS_RADIUS, Eyeball, RigidPart
 from agentface.view.skin.meshes import Skin, SkinFields, SkinMeshes
-from agentface.view.skin.shirt import shirt
+from agentface.view.skin.shirt import shirt_mesh
 from agentface.view.skin.wrinkle_atlas import WrinkleAtlas
 
-_SEED = 20
-_LIP_CUTS = 2
-_SOFTNESSES = 0.35, 0.1  # of brows and lashes
 _FRAME_BYTES = 3 * 64 + 11 * 16
-_IRIS_RADIUS = 0.405  # in radii of the eyeball
 _LONGEST_EDGE = 16.0  # pixels; longer edges of fine skin are cut and curved
 _SPARE_PIXELS = 400_000  # samples, of 20 bytes, that pictures of other sizes may keep
 _COARSEST, _FINEST = 6, 10  # the lengths of those edges are powers of two: 16 mm to 1 mm
@@ -82,36 +79,30 @@ class Renderer:
         self._lost = LostContextCheck(context)
         self._aside = context.framebuffer([context.renderbuffer((1, 1), 4)])
         self._frame = context.buffer(reserve=_FRAME_BYTES)
-        rng = np.random.default_rng(_SEED)
-        self._noise = context.texture3d((SIDE,) * 3, 4, noise_volume(rng).tobytes())
+        chance, lips, grown = irregularities(model, self.look), fine_lips(model), grown_hair(model, self.look)
+        self._noise = context.texture3d(chance.noise.shape[:3], 4, chance.noise.tobytes())
         self._picture = skin_texture(context, self.look)
         self._programs = Programs(context, textured=self._picture is not None)
         self._screens = {name: context.vertex_array(self._programs[name], []) for name in ("background", "copy")}
-        lips = model.derived("view.fine_lips", lambda face: FineLips(face, _LIP_CUTS))
         self._fields = SkinFields(context, model, lips)
-        self._wrinkles = WrinkleAtlas(context, model, unit(self.look.lights.key.towards), rng)
-        normals, hair = model.normals, self.look.hair
-        self._head_hair = None if hair.style == "none" else HeadHair(context, self._programs, model, hair)
+        self._wrinkles = WrinkleAtlas(context, model, unit(self.look.lights.key.towards), chance.grain)
+        self._head_hair = None if grown is None else HeadHair(context, self._programs, model, self.look.hair, grown)
         self._shadow = KeyShadow(context, self._programs.depth, model)
-        self._meshes = SkinMeshes(context, model, lips, self._dressed(normals))
+        dressed = dressed_skin(model, self.look, grown)
+        self._meshes = SkinMeshes(model, lips, {**dressed, "lit_at_rest": self._lit_at_rest(model.normals)})
         self._skins: dict[tuple[str, int], Skin] = {}
         self._mouth = Mouth(context, self._programs["part"], model)
         self._eyes = [Eyeball(context, self._programs["eye"], model, side) for side in SIDES]
-        self._shirt = _shirt(context, self._programs["cloth"], model)
+        self._shirt = RigidPart(context, self._programs["cloth"], shirt_mesh(model))
         self._linings = [
             AnchoredArray(context, self._programs["lining"], mesh, model.vertices) for mesh in eye_linings(model)
         ]
-        grown = model.derived(
-            f"view.brows.{stamp_of((), repr(hair))}",
-            lambda face: (brow_hairs(face, normals, hair, rng), lash_hairs(face, normals, hair, rng)),
-        )
         self._hairs = [
             HairArray(context, self._programs["ribbon"], hairs, softness)
-            for hairs, softness in zip(grown, _SOFTNESSES, strict=True)
+            for hairs, softness in zip((chance.brows, chance.lashes), SOFTNESSES, strict=True)
         ]
-        front = float(model.landmarks["upper_lip_middle"][2])
         self._programs.wear(self.look)
-        self._programs.set({"mouth_front": front, "atlas_height": self._wrinkles.height, "iris_radius": _IRIS_RADIUS})
+        self._programs.set({"atlas_height": self._wrinkles.height, "iris_radius": IRIS_RADIUS})
 
     def current(self) -> AbstractContextManager[None]:
         """A block in which several pictures are drawn with no change of contexts between them.
@@ -257,8 +248,8 @@ class Renderer:
 
     @cached_property
     def _pores(self) -> Any:
-        volume = pores.pore_volume(np.random.default_rng(_SEED))
-        return self._ownership.maker.texture3d((pores.SIDE,) * 3, 4, volume.tobytes())
+        volume = pores()
+        return self._ownership.maker.texture3d(volume.shape[:3], 4, volume.tobytes())
 
     def upload_skin(self, geometry: FaceGeometry) -> None:
         """Hand the skin of the frame to the GPU; ``draw`` does it itself."""
@@ -309,10 +300,8 @@ class Renderer:
         octave = round(np.log2(pixels_a_metre / _LONGEST_EDGE)) if detail.fine else 0
         octave = min(max(octave, _COARSEST), _FINEST) if detail.fine else 0
         if (quality, octave) not in self._skins:
-            programs = self._programs.skins(detail.skin)
-            self._skins[quality, octave] = (
-                self._meshes.fine(programs, 2.0**-octave) if detail.fine else self._meshes.coarse(programs)
-            )
+            mesh = self._meshes.fine(2.0**-octave) if detail.fine else self._meshes.coarse()
+            self._skins[quality, octave] = Skin(self._ownership.maker, self._programs.skins(detail.skin), mesh)
         return self._skins[quality, octave]
 
     def _lit_at_rest(self, normals: Floats) -> Floats:
@@ -324,24 +313,6 @@ class Renderer:
         self._fields.texture.use(0)
         self._shadow.draw()
         return self._shadow.lit(model.vertices, normals, shadow_projection(lights))
-
-    def _dressed(self, normals: Floats) -> dict[str, Floats]:
-        """What the look makes of the skin's vertices."""
-        hair, model = self.look.hair, self.model
-        covered = 0.55 * hair.brow_density * BrowLine(model).density(model.vertices)
-        if hair.style != "none":
-            covered = np.maximum(covered, hidden(model, Hairline(model, hair.hairline), hair))
-        shade = hair_shade(model, hair)
-        if self._head_hair is not None:
-            shade = np.maximum(shade, self._head_hair.shade(model.vertices))
-        dressed = {
-            "complexion": complexion(model, np.asarray(np.clip(covered, 0, 1), np.float32), self.look.skin.stubble),
-            "ambient": (folds(model) * (1 - shade[:, None])).astype(np.float32),
-            "lit_at_rest": self._lit_at_rest(normals),
-        }
-        if self._picture is not None:
-            dressed["picture"] = np.column_stack([model.uv, model.uv_cover])
-        return dressed
 
     def _targets_for(self, size: tuple[int, int], quality: str) -> Targets:
         key = checked_size(size), quality_named(quality).samples
@@ -355,8 +326,3 @@ class Renderer:
             targets = Targets.make(self._ownership.maker, *key)
         self._targets[key] = targets
         return targets
-
-
-def _shirt(context: Any, program: Any, model: HeadModel) -> RigidPart:
-    vertices, triangles, weave = shirt(model)
-    return RigidPart(context, program, vertices, triangles, np.zeros((len(vertices), 4), np.float32), weave)

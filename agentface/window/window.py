@@ -15,7 +15,7 @@ from agentface.conventions import Bytes
 from agentface.errors import GraphicsError
 from agentface.head.look import Look
 from agentface.live.background import Background
-from agentface.live.loop import Frame, Source
+from agentface.live.loop import Frame, Sink, Source
 from agentface.view.gl.context import finish
 from agentface.view.gl.quality import QUALITIES, suited_quality
 from agentface.view.gl.targets import Targets
@@ -97,12 +97,13 @@ class Window:
     def run(
         self,
         sources: Sequence[Source] = (),
+        sinks: Sequence[Sink] = (),
         *,
         duration: float = math.inf,
         stopped: Callable[[], bool] = lambda: False,
         each_frame: Callable[[], object] | None = None,
     ) -> None:
-        """Show the face, which ``sources`` tell what to do, until the window is closed.
+        """Show the face, which ``sources`` tell what to do, until the window is closed; ``sinks`` get each frame.
 
         It also ends after ``duration`` seconds, and when ``stopped``; ``each_frame`` is called before each frame.
         """
@@ -121,6 +122,7 @@ class Window:
                 display_watched(self._display_lost),
                 Background(
                     *(self.controls.face, self.clock, sources, self._held),
+                    sinks=sinks,
                     duration=duration,
                     longest_step_s=_LONGEST_STEP_S,
                 ) as loop,

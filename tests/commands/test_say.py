@@ -4,11 +4,8 @@ from __future__ import annotations
 
 import json
 import os
-import socket
 import subprocess
 import sys
-import threading
-import time
 
 import numpy as np
 import pytest
@@ -21,6 +18,7 @@ from agentface.live.heard import HeardRecorder
 from agentface.parameters import NAMES
 from agentface.speech.sound import Sound
 from agentface.speech.voices.flite import Flite
+from tests.clocks import ServedClock, send
 from tests.display import on_a_virtual_display
 from tests.tools import require
 
@@ -218,29 +216,21 @@ def test_the_sound_of_a_performance_is_in_its_film(tmp_path):
 @pytest.mark.gl
 def test_a_server_films_what_it_says_with_its_sound(tmp_path, jaws):
     from agentface.io.osc.codec import encode
-    from agentface.io.osc.server import OscServer
 
-    port, opened = [], OscServer.__init__
+    path = tmp_path / "a.mp4"
 
-    def noted(server, *arguments, **options):
-        opened(server, *arguments, **options)
-        port.append(server.port)
+    def agent(server):
+        if len(jaws) == 10:
+            send(server, encode("/agentface/say", "Father saw a large car."))
+        for face in server._receiver._faces.values():
+            face.talker.wait()
 
-    def talk():
-        while not port or not jaws:
-            time.sleep(0.05)
-        message = encode("/agentface/say", "Father saw a large car.")
-        with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as client:
-            client.sendto(message, ("127.0.0.1", port[0]))
-
-    threading.Thread(target=talk, daemon=True).start()
-    with pytest.MonkeyPatch.context() as patched:
-        patched.setattr(OscServer, "__init__", noted)
-        path = tmp_path / "a.mp4"
-        options = ("--osc", "127.0.0.1:0", "--record", path, "--every-frame", "--duration", "4", "--liveliness", 0)
+    with ServedClock(agent).at_work():
+        options = ("--osc", "127.0.0.1:0", "--record", path, "--every-frame", "--duration", "3.98", "--liveliness", 0)
         result = call("serve", *options, *SMALL)
     assert result.exit_code == 0, result.output
-    replayed = np.array(jaws[len(jaws) // 2 :])
+    assert len(jaws) == 200
+    replayed = np.array(jaws[100:])
     samples, rate = heard(path)
     assert max(jaws) > 0.15
     begun = onset(samples, rate)

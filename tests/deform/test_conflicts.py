@@ -1,4 +1,7 @@
-"""Two thousand random poses of the whole face: nothing flips, everything is finite; a third: nothing pokes through."""
+"""Two thousand random poses of the whole face: nothing flips, everything is finite; a tenth: nothing pokes through.
+
+The rays that look for what pokes through take nine tenths of the time; ``make soak`` looks at a third of many more.
+"""
 
 from itertools import combinations
 
@@ -14,24 +17,23 @@ from tests.deform.conflicts import Edges, Poking, fold_vertices, random_poses, r
 from tests.heads import deformer_of, head_model
 
 COUNT, SEED = 2000, 2003
-POKE_EVERY = 3
 FACES = ("amber", "onyx")
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("face", FACES)
 def test_random_poses(face):
-    check_poses(face, SEED)
+    check_poses(face, SEED, poke_every=10)
 
 
 @pytest.mark.soak
-@pytest.mark.parametrize("seed", range(5))
+@pytest.mark.parametrize("seed", [SEED, *range(5)])
 @pytest.mark.parametrize("face", FACES)
-def test_ten_thousand_random_poses_more(face, seed):
-    check_poses(face, seed)
+def test_twelve_thousand_random_poses(face, seed):
+    check_poses(face, seed, poke_every=3)
 
 
-def check_poses(face, seed):
+def check_poses(face, seed, poke_every):
     model = head_model(face)
     deformer, edges, poking = deformer_of(face), Edges.of(model), Poking(model)
     outside = ~edges.folding()
@@ -55,8 +57,7 @@ def check_poses(face, seed):
         if len(over):
             middle = model.vertices[edges.ends[over[0]]].mean(axis=0)
             flipped[number] = (len(over), np.round(1e3 * middle, 1).tolist())
-        # the rays take nine tenths of the time
-        if number % POKE_EVERY == 0 and (parts := {part: n for part, n in poking.count(geometry).items() if n}):
+        if number % poke_every == 0 and (parts := {part: n for part, n in poking.count(geometry).items() if n}):
             through[number] = parts
     assert not flipped, f"{len(flipped)} poses with skin turned over, such as (edges, mm): {list(flipped.items())[:5]}"
     assert not through, f"{len(through)} poses with something through the skin: {list(through.items())[:5]}"

@@ -51,22 +51,40 @@ def around(geometry, model):
     }
 
 
-@njit
+@njit(cache=True)
+def bounds_of(corners):
+    """The least and the largest coordinates of each triangle, ``(T, 3)`` each."""
+    low, high = np.empty((len(corners), 3)), np.empty((len(corners), 3))
+    for t in range(len(corners)):
+        for axis in range(3):
+            low[t, axis], high[t, axis] = corners[t, :, axis].min(), corners[t, :, axis].max()
+    return low, high
+
+
+@njit(cache=True)
+def outside(point, low, high):
+    inside = True
+    for axis in range(3):
+        inside = inside and low[axis] <= point[axis] <= high[axis]
+    return not inside
+
+
+@njit(cache=True)
 def deepest(points, corners):
     """How far above or below it the surface of a closed mesh ``(T, 3, 3)`` is, of the point most inside; 0 for none."""
     most = 0.0
-    low, high = np.empty(3), np.empty(3)
+    low, high = bounds_of(corners)
+    lowest, highest = np.empty(3), np.empty(3)
     for axis in range(3):
-        low[axis], high[axis] = corners[:, :, axis].min(), corners[:, :, axis].max()
+        lowest[axis], highest[axis] = low[:, axis].min(), high[:, axis].max()
     for point in points:
-        outside = False
-        for axis in range(3):
-            outside = outside or point[axis] < low[axis] or point[axis] > high[axis]
-        if outside:
+        if outside(point, lowest, highest):
             continue
         x, y, z = point[0] + 1.3e-8, point[1], point[2] + 1.7e-8  # past the edges of triangles that it lies on
         winding, above, below = 0, 1.0, 1.0
         for t in range(corners.shape[0]):
+            if x < low[t, 0] or x > high[t, 0] or z < low[t, 2] or z > high[t, 2]:
+                continue
             a, b, c = corners[t, 0], corners[t, 1], corners[t, 2]
             u = (b[0] - x) * (c[2] - z) - (b[2] - z) * (c[0] - x)
             v = (c[0] - x) * (a[2] - z) - (c[2] - z) * (a[0] - x)

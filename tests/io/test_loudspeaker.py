@@ -2,7 +2,6 @@ from __future__ import annotations
 
 import os
 import sys
-import time
 import types
 from enum import Enum
 
@@ -12,6 +11,7 @@ import pytest
 from agentface.errors import SpeechError
 from agentface.io.loudspeaker import Loudspeaker
 from agentface.speech.sound import Sound
+from tests.waiting import until
 
 RATE = 48_000
 
@@ -129,10 +129,7 @@ def test_the_library_plays(capfd):
     pytest.importorskip("miniaudio")
     with Loudspeaker("NULL") as speaker:
         speaker.play(constant(1000, 0.05))
-        end = time.monotonic() + 20.0
-        while speaker.busy:
-            assert time.monotonic() < end
-            time.sleep(0.01)
+        until(lambda: not speaker.busy)
     try:
         Loudspeaker().close()
     except SpeechError as error:

@@ -116,7 +116,7 @@ def test_a_real_client_hears_of_its_block():
         OscServer(face, port=0) as server,
         socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as client,
     ):
-        client.settimeout(20)
+        client.settimeout(200)
         client.sendto(builder.build().dgram, ("127.0.0.1", server.port))
         while not face.blocks.blocks:
             server.take_in()

@@ -4,17 +4,21 @@ import errno
 import json
 import socket
 import threading
-import time
 
 import pytest
 from osc_bytes import message
 
 from agentface import EmotionState, Face
 from agentface.errors import ServerError
+from agentface.io import datagrams
+from agentface.io.datagrams import MOST_WAITING
 from agentface.io.osc import server as server_module
 from agentface.io.osc.codec import decode
-from agentface.io.osc.server import MOST_WAITING, OscServer
+from agentface.io.osc.server import OscServer
 from tests.heads import head_model
+from tests.waiting import until
+
+WHO = "OSC server", "--osc"
 
 
 @pytest.fixture(scope="module")
@@ -47,23 +51,18 @@ def step(server):
         face.step(0.01)
 
 
-def hear(server, client, seconds=10.0):
+def hear(server, client):
     """The next answer, while the face is stepped."""
-    end = time.monotonic() + seconds
-    while time.monotonic() < end:
+    while True:
         step(server)
         try:
             return decode(client.recv(65536))[0]
         except TimeoutError:
             continue
-    raise AssertionError("no answer")
 
 
-def wait_for(condition, server, seconds=10.0):
-    end = time.monotonic() + seconds
-    while not condition():
-        assert time.monotonic() < end
-        step(server)
+def wait_for(condition, server):
+    until(condition, lambda: step(server))
 
 
 def test_a_message_over_a_socket_and_the_status(server, client):
@@ -92,23 +91,25 @@ def test_a_flood_leaves_the_newest_state_and_no_queue(face, server, client):
         client.send(message("/agentface/emotion", "sf", "joy", number / 20_000))
         if number % 500 == 0:
             step(server)
-            assert len(server._waiting) <= MOST_WAITING
-    # The system drops what comes faster than it is read; the sender's last word comes when the flood is over.
-    wait_for(lambda: not server._waiting, server)
-    client.send(message("/agentface/emotion", "sf", "joy", 0.25))
-    wait_for(lambda: face.emotion == EmotionState.of(happiness=0.25), server)
+            assert len(server._listener.waiting) <= MOST_WAITING
+
+    def last_word():  # repeated: the system drops what comes faster than it is read
+        client.send(message("/agentface/emotion", "sf", "joy", 0.25))
+        step(server)
+
+    until(lambda: face.emotion == EmotionState.of(happiness=0.25), last_word)
     step(server)
-    assert not server._waiting
+    wait_for(lambda: not server._listener.waiting, server)
     assert face.message_counts.errors == {"malformed": 0, "unknown": 0, "rejected": 0}
 
 
 def test_without_steps_the_oldest_are_dropped(face, server, client):
     for number in range(3 * MOST_WAITING):
-        client.send(message("/agentface/emotion", "sf", "joy", number / (3 * MOST_WAITING)))
-        while number % 64 == 63 and len(server._waiting) < min(number, MOST_WAITING) - 63:
-            time.sleep(0.001)
-    time.sleep(0.2)
-    assert len(server._waiting) == MOST_WAITING
+        packet = message("/agentface/emotion", "sf", "joy", number / (3 * MOST_WAITING))
+        client.send(packet)
+        if number % 64 == 63:  # no more at once than the system keeps
+            until(lambda: server._listener.waiting and server._listener.waiting[-1][0] == packet)  # noqa: B023 - done before it changes
+    assert len(server._listener.waiting) == MOST_WAITING
     step(server)
     assert face.emotion["happiness"] > 0.9
     assert face.message_counts.messages == MOST_WAITING
@@ -144,27 +145,27 @@ def test_whatever_localhost_means_it_is_heard_and_answered(face, host, there):
 
 
 def test_the_loopback_is_all_that_it_listens_on(server):
-    places = {listener.getsockname()[0] for listener in server._sockets}
+    places = {listener.getsockname()[0] for listener in server._listener.sockets}
     assert places == {"127.0.0.1", "::1"}
-    assert {listener.getsockname()[1] for listener in server._sockets} == {server.port}
+    assert {listener.getsockname()[1] for listener in server._listener.sockets} == {server.port}
 
 
 def test_one_address_alone_is_taken_at_its_word(face):
     with OscServer(face, "::1", 0) as server:
-        assert [listener.getsockname()[0] for listener in server._sockets] == ["::1"]
+        assert [listener.getsockname()[0] for listener in server._listener.sockets] == ["::1"]
 
 
 def test_a_machine_without_ipv6_listens_on_what_it_has(face, monkeypatch):
-    listen = server_module._listen
+    listen = datagrams._listen
 
-    def without(host, port):
+    def without(host, port, who):
         if ":" in host:
             raise ServerError("none") from OSError(errno.EADDRNOTAVAIL, "none")
-        return listen(host, port)
+        return listen(host, port, who)
 
-    monkeypatch.setattr(server_module, "_listen", without)
+    monkeypatch.setattr(datagrams, "_listen", without)
     with OscServer(face, port=0) as server:
-        assert [listener.getsockname()[0] for listener in server._sockets] == ["127.0.0.1"]
+        assert [listener.getsockname()[0] for listener in server._listener.sockets] == ["127.0.0.1"]
 
 
 def test_a_port_taken_under_the_other_address_is_told_or_passed_over(face):
@@ -176,20 +177,24 @@ def test_a_port_taken_under_the_other_address_is_told_or_passed_over(face):
 
 
 def test_what_the_system_refuses_is_blamed_on_nobody_else():
-    error = server_module._refused("127.0.0.1", 80, PermissionError(errno.EACCES, "Permission denied"))
+    error = datagrams._refused("127.0.0.1", 80, PermissionError(errno.EACCES, "Permission denied"), WHO)
     assert "the right to listen on port 80" in str(error)
     assert "program" not in str(error)
-    error = server_module._refused("10.9.8.7", 7400, OSError(errno.EADDRNOTAVAIL, "Cannot assign requested address"))
+    error = datagrams._refused("10.9.8.7", 7400, OSError(errno.EADDRNOTAVAIL, "Cannot assign requested address"), WHO)
     assert "an address of this machine, got '10.9.8.7'" in str(error)
     assert "program" not in str(error)
 
 
 def test_closing_frees_the_port_and_the_thread(face):
-    threads = threading.active_count()
+    def listening():
+        return [thread for thread in threading.enumerate() if thread.name == "agentface-osc"]
+
+    before = listening()
     server = OscServer(face, port=0)
+    assert len(listening()) == len(before) + 2
     server.close()
     server.close()
-    assert threading.active_count() == threads
+    assert listening() == before
     OscServer(face, port=server.port).close()
 
 

@@ -222,7 +222,7 @@ def test_a_killed_film_with_sound_plays_up_to_there(tmp_path):
     import av
 
     path = tmp_path / "a.mp4"
-    subprocess.run([sys.executable, "-c", KILLED, str(path)], check=False, timeout=60, env=os.environ.copy())
+    subprocess.run([sys.executable, "-c", KILLED, str(path)], check=False, timeout=240, env=os.environ.copy())
     with av.open(str(path)) as file:
         assert len(list(file.decode(video=0))) >= 90
 

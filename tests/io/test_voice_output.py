@@ -1,7 +1,6 @@
 from __future__ import annotations
 
 import threading
-import time
 
 import numpy as np
 import pytest
@@ -10,6 +9,7 @@ from agentface.errors import SpeechError
 from agentface.io.loudspeaker import BUFFER_S
 from agentface.io.voice_output import VoiceOutput
 from agentface.speech.sound import Sound
+from tests.waiting import until
 
 SOUND = Sound(np.ones(800, np.int16), 8000)
 
@@ -44,18 +44,11 @@ class Clock:
         return self.time_s
 
 
-def until(condition):
-    end = time.monotonic() + 20
-    while not condition():
-        assert time.monotonic() < end
-        time.sleep(0.005)
-
-
 def test_the_device_is_opened_with_the_first_sentence_which_is_then_heard_in_its_time():
     talker, device, clock, go = Talker(), Device(), Clock(), threading.Event()
 
     def opened():
-        assert go.wait(20)
+        assert go.wait(200)
         return device
 
     with VoiceOutput(talker, pytest.fail, opened, clock):
@@ -78,7 +71,7 @@ def test_the_device_is_opened_with_the_first_sentence_which_is_then_heard_in_its
 
 def test_what_is_hushed_before_the_device_is_there_is_never_heard():
     talker, device, go = Talker(), Device(), threading.Event()
-    with VoiceOutput(talker, pytest.fail, lambda: go.wait(20) and device):
+    with VoiceOutput(talker, pytest.fail, lambda: go.wait(200) and device):
         talker.say()
         for hush in talker.hushed:
             hush()

@@ -158,6 +158,22 @@ def test_a_revision_counts_from_its_first_phone_on():
     assert channel.status is None
 
 
+def test_what_is_told_once_more_changes_nothing_though_its_times_are_rounded():
+    """As when the same phones are told from another moment: they begin a hair later than those they replace."""
+    once, often = (SpeechChannel(compiled=False) for _ in range(2))
+    for channel in (once, often):
+        channel.speak(saying(0.2, 0.05, 0.2, 0.1, 0.3), live=True)
+    for _ in range(30):
+        now = 0.01
+        for channel in (once, often):
+            channel.advance(now)
+        told = [Phone(p.symbol, p.start_s, p.end_s) for p in often._current._phones]
+        shift = often._current.began - often._now + 1e-12
+        often.speak([Phone(p.symbol, p.start_s + shift, p.end_s + shift) for p in told], live=True)
+        assert len(often._current._phones) == len(once._current._phones)
+        assert shown(often) == pytest.approx(shown(once), abs=0.02)
+
+
 def test_live_phones_wait_behind_what_is_not_live():
     channel = SpeechChannel(compiled=False)
     channel.speak(saying(1.0))

@@ -10,7 +10,7 @@ from agentface.io.bml.reader import read_bml
 from agentface.live.notes import Replay
 from agentface.parameters import NAMES
 from agentface.requests import Gesture, Hush, LookAt, PlayBlock, SetActionUnit, SetEmotion, SetGaze, SetHead, Speak
-from agentface.speech.speaker import Speaker
+from agentface.speech.synthesizer import Synthesizer
 from agentface.talk.block_speech import speak_block, spoken_timetable
 from agentface.talk.blocks import MOST_BLOCKS, BlockPlayer
 from agentface.talk.talker import LEAD_S
@@ -28,7 +28,7 @@ class Stage:
 
     def __init__(self):
         self.face = Face(head_model(), compiled=False)
-        self.player = BlockPlayer(self.face, Speaker(lambda _voice, _language: HundredthsVoice()))
+        self.player = BlockPlayer(self.face, Synthesizer(lambda _voice, _language: HundredthsVoice()))
         self.face._agendas.blocks = self.player
         self.face.noted.append(self.player.notice)
         self.now, self.asked, self.told, self.failed = 0.0, [], [], []

@@ -2,7 +2,6 @@ from __future__ import annotations
 
 import gc
 import threading
-import time
 from collections import deque
 from types import SimpleNamespace
 
@@ -16,10 +15,11 @@ from agentface.requests.say import script_of
 from agentface.speech.phones import Phone
 from agentface.speech.script import Script
 from agentface.speech.sound import Sound
-from agentface.speech.speaker import Order, Speaker
 from agentface.speech.spoken import Spoken, joined, speak_line, speak_script
+from agentface.speech.synthesizer import Order, Synthesizer
 from agentface.talk.talker import LEAD_S, MOST_TEXTS, Talker
 from tests.voices import RATE, FakeVoice
+from tests.waiting import until
 
 
 class Face:
@@ -27,8 +27,8 @@ class Face:
 
     def __init__(self, voice=None):
         self.voice = voice or FakeVoice()
-        self.speaker = Speaker(lambda _voice, _language, ours=self.voice: ours)
-        self.talker = Talker(self, self.speaker)
+        self.synthesizer = Synthesizer(lambda _voice, _language, ours=self.voice: ours)
+        self.talker = Talker(self, self.synthesizer)
         self.now, self.emotion, self.asked, self.mouth = 0.0, EmotionState.of(happiness=0.2), [], None
 
     @property
@@ -105,7 +105,7 @@ def test_the_first_sentence_does_not_wait_for_the_second():
     voice.speak = slow_second
     face.say("One. Two.")
     face.run(0.1)
-    until(lambda: voice.said == ["One."])
+    until(lambda: face.speaker._done)
     face.run(0.5)
     assert [symbol for _, symbol in face.spoken] == ["o"]
     face.run(2.0)
@@ -113,13 +113,6 @@ def test_the_first_sentence_does_not_wait_for_the_second():
     ready(face)
     face.run(1.0)
     assert face.spoken[1] == (pytest.approx(2.6, abs=0.11), "t"), "late, and then at once"
-
-
-def until(condition, within_s=20.0):
-    end = time.monotonic() + within_s
-    while not condition():
-        assert time.monotonic() < end
-        time.sleep(0.005)
 
 
 def test_texts_wait_their_turn_and_interrupt(face):
@@ -286,16 +279,16 @@ def test_a_face_that_is_gone_takes_its_voices_along():
     gc.collect()
     until(lambda: voice.closed)
     for thread in threads:
-        thread.join(10)
+        thread.join()
 
 
-def test_a_closed_speaker_is_silent():
-    speaker = Speaker(lambda *_: FakeVoice())
-    speaker.close()
-    speaker.ask(Order(Script.of("One.")))
-    speaker.wait()
-    assert speaker.take() is None
-    speaker.close()
+def test_a_closed_synthesizer_is_silent():
+    synthesizer = Synthesizer(lambda *_: FakeVoice())
+    synthesizer.close()
+    synthesizer.ask(Order(Script.of("One.")))
+    synthesizer.wait()
+    assert synthesizer.take() is None
+    synthesizer.close()
 
 
 def test_parts_are_joined_to_the_sample():

@@ -73,7 +73,7 @@ def test_no_driver_at_all(folder, tmp_path):
     (tmp_path / "drivers").mkdir()
     none = os.environ | {"__EGL_VENDOR_LIBRARY_DIRS": str(tmp_path / "drivers")}
     command = [sys.executable, "-m", "agentface", *CALLS["picture"]]
-    done = subprocess.run(command, check=False, capture_output=True, text=True, env=none, timeout=100)
+    done = subprocess.run(command, check=False, capture_output=True, text=True, env=none, timeout=240)
     assert done.returncode == 1
     assert "apt-get install" in done.stderr
     assert "Traceback" not in done.stderr

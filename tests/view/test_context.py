@@ -6,7 +6,8 @@ import pytest
 from agentface import Face
 from agentface.errors import GraphicsError
 from agentface.resources import data_folder
-from agentface.view.gl.context import compile_program, open_context, read_source
+from agentface.view.gl.context import compile_program, open_context
+from agentface.view.gl.source import read_source
 
 NOTHING = "#version 330 core\nvoid main() { gl_Position = vec4(0.0); }\n"
 
@@ -86,15 +87,16 @@ def test_every_shader_compiles(context):
         "strand": ["strand"],
         "skin": ["skin"],
         "skin_fast": ["skin_fast"],
-        "atlas": ["atlas"],
         "part": ["part"],
         "cloth": ["cloth"],
         "unwrap": ["unwrap"],
         "eye": ["eye"],
         "anchored": ["part"],
         "cap": ["cap"],
+        "cap_flat": ["cap"],
         "sheet": ["sheet"],
-        "screen": ["background", "copy"],
+        "sheet_flat": ["sheet"],
+        "screen": ["background", "copy", "eye_flat"],
         "bone": ["bone"],
         "film": ["film"],
     }

@@ -326,7 +326,7 @@ if __name__ == "__main__":
     face = Face(compiled=False)
     face.render((64, 48))
     with multiprocessing.get_context("fork").Pool(1) as pool:
-        print(pool.map_async(draw, [None]).get(timeout=60)[0])
+        print(pool.map_async(draw, [None]).get(timeout=240)[0])
     child = os.fork()
     if child == 0:
         said = draw(face)
@@ -345,7 +345,7 @@ def test_a_forked_child_gets_an_error_and_its_parent_draws_on():
         env=os.environ | environment,
         capture_output=True,
         text=True,
-        timeout=120,
+        timeout=240,
         check=False,
     )
     assert run.returncode == 0, run.stderr
@@ -364,7 +364,7 @@ def test_children_of_a_parent_that_has_not_drawn_draw():
         if __name__ == "__main__":
             Face(compiled=False)
             with multiprocessing.get_context("fork").Pool(2) as pool:
-                print(pool.map_async(draw, [1, 2]).get(timeout=100))
+                print(pool.map_async(draw, [1, 2]).get(timeout=240))
     """)
     assert drawn.strip() == "[(48, 64, 3), (48, 64, 3)]"
 

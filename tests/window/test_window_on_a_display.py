@@ -39,7 +39,7 @@ def test_without_imgui_the_window_shows_a_face_that_changes_and_says_how_to_get_
     pytest.importorskip("glfw")
     command = [*on_a_virtual_display(), sys.executable, "-c", WITHOUT_PANEL]
     hidden = os.environ | {"DISPLAY": ""}
-    done = subprocess.run(command, check=False, capture_output=True, text=True, timeout=120, env=hidden)
+    done = subprocess.run(command, check=False, capture_output=True, text=True, timeout=240, env=hidden)
     assert done.returncode == 0, done.stderr
     drawn, said = done.stdout.split("\n", 1)
     frames, size, contrast, changed = drawn.split()

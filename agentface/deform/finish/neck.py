@@ -56,3 +56,18 @@ def apply(tables: NeckTables, head: Floats, vertices: Floats, normals: Floats, s
     for field in (normals, smooth):
         mixed = field[where] + stays * (field[where] @ turn - field[where])
         field[where] = mixed / np.maximum(np.linalg.norm(mixed, axis=1, keepdims=True), _SHORTEST)
+
+
+def released(tables: NeckTables, head: Floats, vertices: Floats, normals: Floats) -> tuple[Floats, Floats]:
+    """The skin as it was before :func:`apply` with the turn ``head (4, 4)``: new ``(V, 3)`` m and unit normals.
+
+    A vertex that turns by w is then moved by linear blend skinning: w by the head, 1 - w by the body.
+    """
+    free, facing, turn, offset = vertices.copy(), normals.copy(), head[:3, :3], head[:3, 3]
+    stays = tables.stays[:, None, None]
+    back = np.linalg.inv(np.eye(3) + stays * (turn.astype(np.float64) - np.eye(3)))
+    held = vertices[tables.where] + tables.stays[:, None] * (offset @ turn)
+    free[tables.where] = np.einsum("ni,nij->nj", held, back)
+    mixed = np.einsum("ni,nij->nj", normals[tables.where], back)
+    facing[tables.where] = mixed / np.maximum(np.linalg.norm(mixed, axis=1, keepdims=True), _SHORTEST)
+    return free, facing

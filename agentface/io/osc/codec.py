@@ -42,8 +42,16 @@ class Message:
 
 def decode(packet: bytes) -> list[Message]:
     """All messages of a packet in their order, bundles opened; raises MalformedError if any part is malformed."""
-    if len(packet) > LARGEST_DATAGRAM:
-        raise MalformedError(f"more than {LARGEST_DATAGRAM} bytes")
+    return [read(element, date) for element, date in split(packet)]
+
+
+def split(packet: bytes, largest: int = LARGEST_DATAGRAM) -> list[tuple[bytes, float | None]]:
+    """The bytes of each message of a packet with its date, bundles opened.
+
+    Raises MalformedError for a packet of more than ``largest`` bytes and for bundles that are not as they should be.
+    """
+    if len(packet) > largest:
+        raise MalformedError(f"more than {largest} bytes")
     return list(_open(packet, None, 0))
 
 
@@ -61,9 +69,9 @@ def address_of(packet: bytes) -> str:
     return "".join(char for char in start.decode("ascii", "ignore") if char.isprintable())
 
 
-def _open(packet: bytes, date: float | None, depth: int) -> Iterator[Message]:
+def _open(packet: bytes, date: float | None, depth: int) -> Iterator[tuple[bytes, float | None]]:
     if not packet.startswith(_BUNDLE):
-        yield _message(packet, date)
+        yield packet, date
         return
     if depth >= _DEEPEST:
         raise MalformedError(f"bundles nested more than {_DEEPEST} deep")
@@ -87,7 +95,8 @@ def _later(outer: float | None, time_tag: int) -> float | None:
     return date if outer is None else max(outer, date)
 
 
-def _message(packet: bytes, date: float | None) -> Message:
+def read(packet: bytes, date: float | None = None) -> Message:
+    """One message of its bytes; raises MalformedError."""
     from pythonosc.osc_message import OscMessage
     from pythonosc.parsing import osc_types
 

@@ -10,9 +10,9 @@ from agentface.bml.block import ENDS, Block
 from agentface.clock import Clock
 from agentface.errors import AgentFaceError
 from agentface.face import Face
+from agentface.io.datagrams import Sender
 from agentface.io.osc.codec import encode
 from agentface.io.osc.rate_limit import RateLimit
-from agentface.io.osc.schedule import Sender
 from agentface.talk.blocks import STOPPED, Progress
 
 AT_ONCE, A_SECOND = 2000.0, 500.0

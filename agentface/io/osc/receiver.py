@@ -10,11 +10,12 @@ from typing import Any, TypeAlias
 from agentface.clock import Clock
 from agentface.errors import AgentFaceError, InvalidValueError
 from agentface.face import Face
+from agentface.io.datagrams import Sender
 from agentface.io.osc.addresses import ERROR, FEEDBACK, PREFIX, STATUS, Addresses, check_id, pressed, reason_and_hint
 from agentface.io.osc.codec import MalformedError, Message, address_of, decode, encode
 from agentface.io.osc.feedback import Feedback
 from agentface.io.osc.rate_limit import RateLimit
-from agentface.io.osc.schedule import FURTHEST_S, MOST, Schedule, Sender, Waiting
+from agentface.io.osc.schedule import FURTHEST_S, MOST, Schedule, Waiting
 from agentface.motion.doing import Doing
 from agentface.requests import PlayBlock
 

@@ -5,12 +5,10 @@ from __future__ import annotations
 import heapq
 from dataclasses import dataclass
 from itertools import count
-from typing import Any, TypeAlias
 
+from agentface.io.datagrams import Sender
 from agentface.requests import Request
 
-Sender: TypeAlias = tuple[Any, ...]
-"""The address of a socket."""
 FURTHEST_S = 600.0
 """A bundle may lie at most so many seconds ahead."""
 MOST = 4096

@@ -19,6 +19,7 @@ from agentface.arkit.stream import ANGLES, ArkitStream
 from agentface.conventions import check_rate
 from agentface.errors import FaultList, shown
 from agentface.head.arkit import ARKIT_SHAPES
+from agentface.io.performances.reading import single
 from agentface.io.performances.seen_frames import SeenFrames
 from agentface.io.performances.table import CsvTable, TableRow
 
@@ -76,9 +77,7 @@ def read_live_link(
     weights, turned = np.split(numbers, [len(ARKIT_SHAPES)], axis=1)
     if not turned.size:
         turned = np.zeros((len(times), len(ANGLES)))
-    return ArkitStream(
-        times, weights.astype(np.float32), turned.astype(np.float32), rate, Path(where).stem, frames.notes
-    )
+    return ArkitStream(times, single(weights), single(turned), rate, Path(where).stem, frames.notes)
 
 
 def write_live_link(stream: ArkitStream) -> str:

@@ -24,7 +24,7 @@ import numpy as np
 
 from agentface.conventions import FASTEST_HZ, Doubles, Floats
 from agentface.errors import FaultList, did_you_mean, shown
-from agentface.io.performances.reading import MOST_FRAMES
+from agentface.io.performances.reading import MOST_FRAMES, single
 from agentface.motion.performance import LONGEST_S, Performance
 from agentface.parameters import COUNT, HIGH, LOW, NAMES, NEUTRAL, PARAMETERS
 
@@ -154,7 +154,7 @@ class _Reader:
             raise AssertionError("a fault was told")
         if len(values) > MOST_FRAMES:
             self._faults.stop(self._line(("poses",)), "poses", f"at most {MOST_FRAMES:,} frames", len(values))
-        rounded = values.astype(np.float32)  # at a limit, doubles may be just outside
+        rounded = single(values)  # at a limit, doubles may be just outside
         for frame, column in np.argwhere(~((rounded >= LOW[places]) & (rounded <= HIGH[places]))).tolist():
             known = PARAMETERS[places[column]]
             where = ("poses", frame, column)
@@ -195,7 +195,7 @@ class _Reader:
             return full
         for place in np.argwhere(~((weights >= 0.0) & (weights <= 1.0))).tolist():
             self._tell(("weights", *place), "a number in 0..1", f"{weights[tuple(place)]:g}")
-        rows = np.atleast_2d(weights)
+        rows = single(np.atleast_2d(weights))
         full = np.zeros((len(rows), COUNT), np.float32)
         full[:, places] = rows
         return full

@@ -15,6 +15,7 @@ import numpy as np
 
 from agentface.conventions import check_rate
 from agentface.errors import FaultList
+from agentface.io.performances.reading import single
 from agentface.io.performances.seen_frames import SeenFrames
 from agentface.io.performances.table import CsvTable
 from agentface.io.performances.unit_columns import unit_columns
@@ -70,7 +71,7 @@ def read_py_feat(
         times,
         tuple(units),
         seen.clip(0.0, 1.0).astype(np.float32),
-        None if angles is None else (np.deg2rad(angles) if in_degrees else angles).astype(np.float32),
+        None if angles is None else single(np.deg2rad(angles) if in_degrees else angles),
         name=Path(where).stem,
         notes=frames.notes,
     )

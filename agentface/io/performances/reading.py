@@ -6,6 +6,9 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import BinaryIO
 
+import numpy as np
+
+from agentface.conventions import Doubles, Floats
 from agentface.errors import DataError, Fault, FaultList
 
 MOST_FRAMES = 500_000
@@ -68,3 +71,9 @@ def lines_of(path: str | Path) -> Iterator[str]:
                 faults.stop(number, "", "text in UTF-8", f"the byte {line[error.start]:#04x}")
             yield text.rstrip("\r\n")
     faults.stop(None, "", f"a file of fewer than {MOST_FRAMES * 4:,} lines", "more")
+
+
+def single(values: Doubles) -> Floats:
+    """``values`` as float32; what is beyond its range is brought to its ends."""
+    ends = np.finfo(np.float32)
+    return np.asarray(values.clip(ends.min, ends.max), np.float32)

@@ -24,6 +24,7 @@ BENCHES: dict[str, str] = {
     "tissue": "the second paper's results: semi-implicit, adaptive and our solver on five expressions",
     "mpeg4": "FAPs measured and solved, and the errors of the round trip, beside scipy",
     "arkit": "ARKit's weights solved for and given back, and what muscles make of each shape",
+    "web": "a face in pages: how true its frames are, what they weigh and cost, how late they come",
     "texture": "a picture worn as skin: how finely it lies, how emotions strain it, what drawing it costs",
 }
 """The benchmarks and what they compare; each is a module of this package with ``run() -> dict``."""

@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-import json
-import subprocess
-import sys
 import time
 from collections.abc import Mapping, Sequence
 from itertools import pairwise
@@ -22,24 +19,14 @@ from agentface.io.osc.server import OscServer
 from agentface.live.loop import Frame
 from agentface.live.loop import run as run_loop
 from agentface.parameters import FacePose
+from agentface.studies.bench.flood import flood
+from agentface.studies.bench.sender import sending
 
 HZ = 60.0
 _WARM = 10
 """So many messages at first do not count."""
-_LONGEST_S = 10.0
+_LONGEST_S = 30.0
 """So much longer than the messages take is waited for the last of them."""
-_SENDER = """
-import json, socket, sys, time
-place, gaps, packets = json.load(sys.stdin)
-times = []
-with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as sender:
-    sender.connect(tuple(place))
-    for gap, packet in zip(gaps, map(bytes.fromhex, packets)):
-        time.sleep(gap)
-        times.append(time.monotonic())
-        sender.send(packet)
-print(json.dumps(times))
-"""
 
 
 class ChangeWatch:
@@ -68,13 +55,15 @@ class ChangeWatch:
         self._pose = frame.pose
 
 
-def run(model: Any = None, messages: int = 300, deformer_name: str = DEFAULT_DEFORMER) -> dict[str, Any]:
+def run(
+    model: Any = None, messages: int = 300, deformer_name: str = DEFAULT_DEFORMER, flood_s: float = 10.0
+) -> dict[str, Any]:
     """Milliseconds from sending to the first changed frame, with the server stepping 60 times a second.
 
     ``p50_ms`` and ``p99_ms`` are percentiles of all messages, ``lost`` how many were not shown; ``frame_ms``, from a
     frame to the next, and ``step_ms``, what of that the face is at work, are medians; ``late_frames`` came half a frame
     late or more. A message waits for the next frame, at most one whole one. ``picture_ms`` is apart from all that: what
-    a picture of 1280 x 720 takes afterwards, null without OpenGL.
+    a picture of 1280 x 720 takes afterwards, null without OpenGL. Then a flood of ``flood_s`` seconds (:func:`flood`).
     """
     if model is None:
         from agentface.head.model import load_model
@@ -85,31 +74,27 @@ def run(model: Any = None, messages: int = 300, deformer_name: str = DEFAULT_DEF
     # far apart from one to the next, each once, and exact in OSC's float32
     levels = [(number % 2 + number / count) / 2 for number in range(count)]
     levels = [float(np.float32(level)) for level in levels]
-    gaps = draw.uniform(2.2 / HZ, 4.0 / HZ, count).tolist()
+    due_s = np.cumsum(draw.uniform(2.2 / HZ, 4.0 / HZ, count)).tolist()
     with Face(model, deformer=deformer_name) as face, OscServer(face, port=0) as server:
         face.warm_up()
         watch = ChangeWatch(face, levels)
-        sent = _exchange(face, server, watch, gaps, levels)
-        return _figures(sent, watch, skipped=_WARM) | {"picture_ms": _picture_ms(face)}
+        sent = _exchange(face, server, watch, due_s, levels)
+        shown = _figures(sent, watch, skipped=_WARM) | {"picture_ms": _picture_ms(face)}
+    return shown | flood(model, flood_s, deformer_name)
 
 
 def _exchange(
-    face: Face, server: OscServer, watch: ChangeWatch, gaps: Sequence[float], levels: Sequence[float]
+    face: Face, server: OscServer, watch: ChangeWatch, due_s: Sequence[float], levels: Sequence[float]
 ) -> list[float]:
     """When each message was sent, by the clock that all processes share."""
-    packets = [encode("/agentface/emotion", "happiness", level, 0.0).hex() for level in levels]
-    command = [sys.executable, "-c", _SENDER]
-    with subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True) as sender:  # noqa: S603
-        assert sender.stdin is not None and sender.stdout is not None  # noqa: PT018, S101 - for the type checker
-        json.dump([[server.host, server.port], gaps, packets], sender.stdin)
-        sender.stdin.close()
-        end = time.monotonic() + sum(gaps) + _LONGEST_S
+    packets = [encode("/agentface/emotion", "happiness", level, 0.0) for level in levels]
+    with sending((server.host, server.port), due_s, packets, hurried=False) as times:
+        end = time.monotonic() + due_s[-1] + _LONGEST_S
 
         def stopped() -> bool:
-            return len(watch.shown_s) >= len(levels) or time.monotonic() > end
+            return len(levels) - 1 in watch.shown_s or time.monotonic() > end
 
         run_loop(face, SystemClock(), [server], [watch], fps=HZ, stopped=stopped)
-        times: list[float] = json.load(sender.stdout)
     return times
 
 

@@ -6,7 +6,6 @@ import ctypes
 import re
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
 from functools import cache
 from importlib import import_module
 from pathlib import Path
@@ -15,11 +14,9 @@ from typing import Any, NoReturn
 from agentface.errors import GraphicsError
 from agentface.resources import data_folder
 from agentface.view.gl.current import kept_api
+from agentface.view.gl.source import ShaderSource, read_source
 
-_INCLUDE = re.compile(r'^\s*#include\s+"([^"]+)"\s*$')
-# Mesa: "2:13(5): error", NVIDIA: "2(13) : error", others: "ERROR: 2:13:"
 _TITLE = re.compile(r"\AGLSL \w+ failed\s+\w+\s+=+\s+")
-_PLACE = re.compile(r"\b(\d+)(?::(\d+)(?:\(\d+\))?|\((\d+)\))\s*:")
 
 _NO_EGL = """expected OpenGL 3.3 through EGL, got: {reason}.
 On Debian and Ubuntu install the Debian packages libegl1 and libgl1 (Mesa's software renderer comes with them):
@@ -96,60 +93,6 @@ class LostContextCheck:
                 f"the picture: expected OpenGL to have drawn it, got: {reason};"
                 " ask for a smaller picture, or start the program again"
             )
-
-
-@dataclass(frozen=True, slots=True)
-class ShaderSource:
-    """One shader's text with its includes in place; ``files[n]`` is the file that ``#line`` calls ``n``."""
-
-    text: str
-    files: tuple[Path, ...]
-
-    def explain(self, log: str) -> str:
-        """A compiler's log with the numbers of files replaced by their paths."""
-
-        def place(match: re.Match[str]) -> str:
-            number = int(match[1])
-            return f"{self.files[number]}:{match[2] or match[3]}:" if number < len(self.files) else match[0]
-
-        return _PLACE.sub(place, log)
-
-
-def read_source(name: str, folder: str | Path | None = None, defines: tuple[str, ...] = ()) -> ShaderSource:
-    """The shader ``name`` from ``shaders/`` (or ``folder``); each ``#include "x.glsl"`` is put in once.
-
-    ``defines`` are defined for the preprocessor behind the line ``#version``.
-
-    Raises GraphicsError with file and line for a file that cannot be read.
-    """
-    folder = None if folder is None else Path(folder)
-    root = folder or data_folder("shaders")
-    files: list[Path] = []
-    lines = _lines(root / name, files, "this shader")
-    version = next((number for number, line in enumerate(lines, start=1) if line.startswith("#version")), 0)
-    if defines:
-        lines[version:version] = [*(f"#define {name}" for name in defines), f"#line {version + 1} 0"]
-    return ShaderSource("\n".join(lines) + "\n", tuple(files))
-
-
-def _lines(path: Path, files: list[Path], wanted_by: str) -> list[str]:
-    try:
-        text = path.read_text(encoding="utf-8")
-    except (OSError, UnicodeDecodeError) as error:
-        raise GraphicsError(f"{wanted_by}: expected a readable shader {path}, got: {error}") from error
-    number = len(files)
-    files.append(path)
-    lines: list[str] = []
-    for count, line in enumerate(text.splitlines(), start=1):
-        match = _INCLUDE.match(line)
-        if match is None:
-            lines.append(line)
-        elif path.parent / match[1] not in files:
-            lines += ["#line 1 " + str(len(files)), *_lines(path.parent / match[1], files, f"{path}:{count}")]
-            lines.append(f"#line {count + 1} {number}")
-        else:
-            lines.append("")
-    return lines
 
 
 @contextmanager

@@ -18,7 +18,7 @@ _SLOTS = {
     "skin_picture": 4,
     "pores": 5,
 }
-_SHADERS = {
+SHADERS = {
     "part": ("part", "part"),
     "cloth": ("cloth", "cloth"),
     "eye": ("eye", "eye"),
@@ -34,6 +34,25 @@ _SELDOM = {"bone": ("bone", "bone"), "film": ("film", "film")}
 """Those that few renderers draw with: compiled when one is first asked for."""
 
 
+def colours(look: Look) -> dict[str, Any]:
+    """The uniforms that are the look's alone."""
+    return {
+        "skin_tone": look.skin.tone,
+        "lip_tint": look.skin.lips,
+        "shine": look.skin.shine,
+        "hair_colour": look.hair.colour,
+        "cloth": look.cloth,
+        "teeth": look.teeth,
+        "iris_inner": look.eyes.iris_inner,
+        "iris_outer": look.eyes.iris_outer,
+        "sclera": look.eyes.sclera,
+        "pupil_radius": look.eyes.pupil,
+        "background_inner": look.background_inner,
+        "background_outer": look.background_outer,
+        "exposure": look.exposure,
+    }
+
+
 class Programs:
     """Programs by name; a skin's has the names of its shaders, and ``-wrinkled`` behind them where it is.
 
@@ -43,7 +62,7 @@ class Programs:
     def __init__(self, context: Any, *, textured: bool = False) -> None:
         self._context = context
         self._look: Look | None = None
-        self._programs = {name: self._compile(*shaders) for name, shaders in _SHADERS.items()}
+        self._programs = {name: self._compile(*shaders) for name, shaders in SHADERS.items()}
         self.depth = self._compile("depth", None)
         for quality in QUALITIES.values():
             worn = ("TEXTURED",) if textured else ()
@@ -75,23 +94,7 @@ class Programs:
     def wear(self, look: Look) -> None:
         """Set the colours of ``look``."""
         self._look = look
-        self.set(
-            {
-                "skin_tone": look.skin.tone,
-                "lip_tint": look.skin.lips,
-                "shine": look.skin.shine,
-                "hair_colour": look.hair.colour,
-                "cloth": look.cloth,
-                "teeth": look.teeth,
-                "iris_inner": look.eyes.iris_inner,
-                "iris_outer": look.eyes.iris_outer,
-                "sclera": look.eyes.sclera,
-                "pupil_radius": look.eyes.pupil,
-                "background_inner": look.background_inner,
-                "background_outer": look.background_outer,
-                "exposure": look.exposure,
-            }
-        )
+        self.set(colours(look))
 
     def _compile(self, vertex: str, fragment: str | None, defines: tuple[str, ...] = ()) -> Any:
         program = compile_program(

@@ -18,15 +18,19 @@ def pack_frame(camera: Camera, size: tuple[int, int], head: Floats, lights: Ligh
     view = camera.projection(width / height) @ camera.view()
     # pixels a metre at one metre from the camera, for hair thinner than a pixel
     scale = 0.5 * height * float(camera.projection(width / height)[1, 1])
-    rows = [lights.key, lights.fill, lights.rim_left, lights.rim_right]
-    towards = np.zeros((4, 4), np.float32)
-    colours = np.zeros((4, 4), np.float32)
-    for i, light in enumerate(rows):
-        towards[i, :3] = unit(light.towards)
-        colours[i, :3] = np.multiply(light.colour, light.strength)
+    towards, colours = light_rows(lights)
     blocks = [view.T, shadow_projection(lights).T, np.asarray(head).T, [[*camera.eye, scale]], towards, colours]
     blocks += [[[*lights.sky, 0.0]], [[*lights.ground, 0.0]]]
     return np.concatenate([np.asarray(block, np.float32) for block in blocks]).tobytes()
+
+
+def light_rows(lights: Lights) -> tuple[Floats, Floats]:
+    """``(4, 4)`` each: unit vectors towards the lights, and their colours; the last number of a row is spare."""
+    towards, colours = np.zeros((4, 4), np.float32), np.zeros((4, 4), np.float32)
+    for i, light in enumerate((lights.key, lights.fill, lights.rim_left, lights.rim_right)):
+        towards[i, :3] = unit(light.towards)
+        colours[i, :3] = np.multiply(light.colour, light.strength)
+    return towards, colours
 
 
 def pixels_a_metre(camera: Camera, size: tuple[int, int]) -> float:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -25,11 +26,8 @@ class Cap:
     """The layer on the GPU: what is far enough behind the hairline hides the skin, the strip at it blends."""
 
     def __init__(self, context: Any, program: Any, mesh: Anchored, skin: Floats) -> None:
-        clear = (mesh.material[mesh.triangles, 0] < _OPAQUE).any(1)
-        triangles = np.concatenate([mesh.triangles[~clear], mesh.triangles[clear]])
-        ordered = Anchored(mesh.vertices, mesh.normals, triangles, mesh.anchors, mesh.material)
-        self._array = AnchoredArray(context, program, ordered, skin).array
-        self._solid = 3 * int((~clear).sum())
+        ordered, solid = solid_first(mesh)
+        self._array, self._solid = AnchoredArray(context, program, ordered, skin).array, 3 * solid
 
     def draw_solid(self) -> None:
         """Draw what hides the skin."""
@@ -38,6 +36,13 @@ class Cap:
     def draw_soft(self) -> None:
         """Draw the strip at the hairline, which blends."""
         self._array.render(vertices=self._array.vertices - self._solid, first=self._solid)
+
+
+def solid_first(mesh: Anchored) -> tuple[Anchored, int]:
+    """The same cap with the triangles that hide the skin before those that blend, and how many do."""
+    clear = (mesh.material[mesh.triangles, 0] < _OPAQUE).any(1)
+    triangles = np.concatenate([mesh.triangles[~clear], mesh.triangles[clear]])
+    return replace(mesh, triangles=triangles), int((~clear).sum())
 
 
 def scalp_cap(model: HeadModel, line: Hairline, look: HairLook) -> Anchored:

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from agentface.conventions import Doubles, Floats, Indices
+from agentface.view.gl.drawn_mesh import DrawnMesh
 
 _AROUND = 0.004  # m, how far round the places triangles are looked at
 _POINTS = 4
@@ -62,6 +63,21 @@ class Hairs:
         offsets = 2 * t * (1 - t) * self.bends + t * t * self.tips
         return np.asarray(roots + np.einsum("nij,nj->ni", axes, offsets))
 
+    def drawn(self) -> DrawnMesh:
+        """For ``shaders/ribbon.vert.glsl``: two vertices at each of some points along a hair."""
+        steps, sides = np.repeat(np.linspace(0.0, 1.0, _POINTS), 2), np.tile([-1.0, 1.0], _POINTS)
+        count, each = len(self), 2 * _POINTS
+        quads = (np.arange(count)[:, None] * each + 2 * np.arange(_POINTS - 1)).reshape(-1, 1)
+        return DrawnMesh.of(
+            (quads + np.array([0, 1, 2, 1, 3, 2])).reshape(-1, 3),
+            corners=np.repeat(self.roots.corners, each, axis=0),
+            weights=np.repeat(self.roots.weights, each, axis=0),
+            bend=np.repeat(self.bends, each, axis=0),
+            tip=np.repeat(self.tips, each, axis=0),
+            stroke=np.stack([np.tile(steps, count), np.tile(sides, count), np.repeat(self.radii, each)], axis=1),
+            paint=np.repeat(self.paint, each, axis=0),
+        )
+
     def __len__(self) -> int:
         return len(self.radii)
 
@@ -70,23 +86,8 @@ class HairArray:
     """Hairs on the GPU: static, the vertex shader puts them on the skin of the frame."""
 
     def __init__(self, context: Any, program: Any, hairs: Hairs, gloss: float) -> None:
-        self.program, self.gloss = program, gloss
-        steps = np.repeat(np.linspace(0.0, 1.0, _POINTS), 2)
-        sides = np.tile([-1.0, 1.0], _POINTS)
-        count = len(hairs)
-        each = 2 * _POINTS
-        stroke = np.stack([np.tile(steps, count), np.tile(sides, count), np.repeat(hairs.radii, each)], axis=1)
-        rows = [np.repeat(field, each, axis=0) for field in (hairs.roots.weights, hairs.bends, hairs.tips)]
-        floats = np.concatenate([*rows, stroke, np.repeat(hairs.paint, each, axis=0)], axis=1).astype(np.float32)
-        corners = np.repeat(hairs.roots.corners, each, axis=0).astype(np.int32)
-        quads = (np.arange(count)[:, None] * each + 2 * np.arange(_POINTS - 1)).reshape(-1, 1)
-        triangles = (quads + np.array([0, 1, 2, 1, 3, 2])).reshape(-1, 3).astype(np.int32)
-        layout = [
-            (context.buffer(corners.tobytes()), "3i", "corners"),
-            (context.buffer(floats.tobytes()), "3f 3f 3f 3f 4f", "weights", "bend", "tip", "stroke", "paint"),
-        ]
-        self.count = count
-        self.array = context.vertex_array(program, layout, context.buffer(triangles.tobytes()))
+        self.program, self.gloss, self.count = program, gloss, len(hairs)
+        self.array = hairs.drawn().array(context, program)
 
     def draw(self, share: float = 1.0) -> None:
         """Draw them, or the first ``share`` 0..1 of them, where the skin is."""

@@ -11,6 +11,7 @@ from agentface.conventions import SIDES, Doubles, Floats, Indices
 from agentface.head.look import HairLook
 from agentface.head.model import HeadModel
 from agentface.mesh.smoothstep import smoothstep
+from agentface.view.gl.drawn_mesh import DrawnMesh
 from agentface.view.hair.groom import smoothed, waves
 from agentface.view.hair.hairline import Hairline
 from agentface.view.hair.hull import Hull
@@ -36,7 +37,7 @@ _AT_PARTING, _RISE = 0.25, 0.045
 """How high hair lies where it starts, as a part of its thickness, and the metres over which it rises from there."""
 _EDGE_SHADE, _EDGE_REACH = 0.6, 0.011
 """How much light the front edge keeps off the skin below it, and within how many metres."""
-_LOCKS = 13
+LOCKS = 13
 _WIDTHS = 0.3, 1.7
 """Of the spaces between columns, in locks, as parts of their mean."""
 _RIDGE, _UNEVEN = 0.0016, 0.05
@@ -152,9 +153,9 @@ def _sheet(
     hull: Hull, look: HairLook, paths: Doubles, thickness: float, layer: float, rng: np.random.Generator
 ) -> Sheet:
     widths = rng.uniform(*_WIDTHS, len(paths) - 1)
-    across = np.concatenate([[0.0], np.cumsum(widths)]) * _LOCKS / widths.sum()
+    across = np.concatenate([[0.0], np.cumsum(widths)]) * LOCKS / widths.sum()
     t = np.linspace(0.0, 1.0, _ROWS) ** 1.3 if layer == 1.0 else np.linspace(_INNER_FROM, 1.0, _INNER_ROWS)
-    uneven = np.interp(across, np.arange(_LOCKS + 1), rng.uniform(0.0, 1.0, _LOCKS + 1))
+    uneven = np.interp(across, np.arange(LOCKS + 1), rng.uniform(0.0, 1.0, LOCKS + 1))
     points, along = _resampled(paths, t, (1.0 - _UNEVEN * uneven) * (0.94 + 0.06 * layer))
     ridge = np.sin(np.pi * (across % 1.0))[:, None] - 0.5
     tucked = _TUCKED + (1.0 - _TUCKED) * smoothstep(0.0, 1.5, across)[:, None]
@@ -200,18 +201,32 @@ def flyaways(grown: list[Sheet], amount: Amount, look: HairLook, rng: np.random.
                   np.ones(count), np.ones(count))  # fmt: skip
 
 
+def sheets_mesh(grown: list[Sheet]) -> DrawnMesh:
+    """All sheets for ``shaders/sheet.vert.glsl``."""
+    meshes = [sheet.mesh() for sheet in grown]
+    firsts = np.cumsum([0, *(len(rows) for rows, _ in meshes)])
+    place, along_rest, facing, sheet = np.split(np.concatenate([rows for rows, _ in meshes]), (3, 6, 9), axis=1)
+    triangles = [triangles + first for (_, triangles), first in zip(meshes, firsts, strict=False)]
+    return DrawnMesh.of(np.concatenate(triangles), place=place, along_rest=along_rest, facing=facing, sheet=sheet)
+
+
+def hanging_first(triangles: Indices, places: Floats) -> tuple[Indices, int]:
+    """``triangles (T, 3)`` from the lowest up, and how many of them hang: these are seen from inside too.
+
+    ``places (N, 3)`` m from the head's centre.
+    """
+    lowest = places[triangles, 1].min(axis=1)
+    return triangles[np.argsort(lowest, kind="stable")], int((lowest < _INSIDE_BELOW).sum())
+
+
 class SheetArray:
     """Sheets on the GPU; they turn with the head."""
 
     def __init__(self, context: Any, program: Any, grown: list[Sheet], model: HeadModel, centre: Doubles) -> None:
         """``centre`` m: hair well above it has the head behind it and is seen from outside only."""
         self._context, self._program, self._centre = context, program, centre
-        meshes = [sheet.mesh() for sheet in grown]
-        firsts = np.cumsum([0, *(len(rows) for rows, _ in meshes)])
-        self._rows = np.concatenate([rows for rows, _ in meshes])
-        parts = [triangles + first for (_, triangles), first in zip(meshes, firsts, strict=False)]
-        self._triangles = np.concatenate(parts).astype(np.int32)
-        self._layout = [(context.buffer(self._rows.tobytes()), "3f 3f 3f 4f", "place", "along_rest", "facing", "sheet")]
+        self._mesh = sheets_mesh(grown)
+        self._layout = self._mesh.layout(context, program)
         self._skin = skin_round(model, centre)
         self._arrays: dict[tuple[int, int, int] | None, tuple[Any, int]] = {}
         self._drawn: tuple[Any, int] = self._seen_from(None)
@@ -243,12 +258,11 @@ class SheetArray:
     def _seen_from(self, sector: tuple[int, int, int] | None) -> tuple[Any, int]:
         """An array of what may be seen from a sector, and how many of its indices hang: these are seen from inside."""
         if sector not in self._arrays:
-            places = self._rows[:, :3] - self._centre.astype(np.float32)
-            triangles = self._triangles
+            places = self._mesh.fields["place"] - self._centre.astype(np.float32)
+            triangles = self._mesh.triangles
             if sector is not None:
                 triangles = triangles[before_skin(places, self._skin, middle_of(sector))[triangles].any(axis=1)]
-            ordered = triangles[np.argsort(places[triangles, 1].min(axis=1), kind="stable")]
+            ordered, hanging = hanging_first(triangles, places)
             buffer = self._context.buffer(ordered.tobytes())
-            hanging = int((places[triangles, 1].min(axis=1) < _INSIDE_BELOW).sum())
             self._arrays[sector] = self._context.vertex_array(self._program, self._layout, buffer), 3 * hanging
         return self._arrays[sector]

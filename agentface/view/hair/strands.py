@@ -9,6 +9,7 @@ import numpy as np
 
 from agentface.conventions import Doubles, Floats, Indices
 from agentface.head.model import HeadModel
+from agentface.view.gl.drawn_mesh import DrawnMesh
 from agentface.view.hair.ribbons import unit_rows
 from agentface.view.hair.visible import Chosen, on_near_side, unhidden
 
@@ -17,7 +18,7 @@ _NEAR = 0.45
 """Metres from the middle of the head."""
 _REACH = 0.8
 """The part of its half width that a strand surely reaches to both sides."""
-_LIFT, _DEEP = 0.020, 0.6
+LIFT = 0.020, 0.6
 """Metres that locks are drawn nearer over their cover, so that which of two lies outside stays the same on their way;
 the cover from which on."""
 
@@ -44,30 +45,40 @@ class Strands:
     def __len__(self) -> int:
         return len(self.radii)
 
+    @property
+    def solid(self) -> int:
+        """How many of the triangles of :meth:`drawn`, the first ones, hide what is behind them."""
+        return 2 * (len(self) - self.fine) * (self.points.shape[1] - 1)
+
+    def drawn(self, skin: Floats) -> DrawnMesh:
+        """All of them for ``shaders/strand.vert.glsl``, on the ``skin (V, 3)`` m at rest: two vertices a point."""
+        count, points = self.points.shape[:2]
+        along = np.gradient(self.points, axis=1)
+        along /= np.maximum(np.linalg.norm(along, axis=2, keepdims=True), 1e-9)
+        t = np.broadcast_to(np.linspace(0, 1, points, dtype=np.float32), (count, points))
+        stroke = np.stack([t, np.repeat(self.radii[:, None], points, axis=1), self.cover], axis=2)
+
+        def twice(rows: Floats) -> Floats:
+            return np.repeat(rows.reshape(count * points, -1), 2, axis=0)
+
+        return DrawnMesh.of(
+            _ribbons(np.arange(count * (points - 1)), points - 1),
+            anchor=np.repeat(self.anchors, 2 * points),
+            offset=twice(self.points - skin[self.anchors][:, None]),
+            along_rest=twice(along),
+            stroke=twice(stroke),
+            paint=twice(np.repeat(self.paint[:, None], points, axis=1)),
+            side=np.tile(np.array([-1.0, 1.0], np.float32), count * points),
+        )
+
 
 class StrandArray:
     """Strands on the GPU: static, lit at their points, drawn as ribbons that face the camera."""
 
     def __init__(self, context: Any, program: Any, strands: Strands, model: HeadModel, centre: Doubles) -> None:
-        skin = model.vertices
         self._context, self.program, self._strands, self._centre = context, program, strands, centre
-        count, points = strands.points.shape[:2]
-        offsets = strands.points - skin[strands.anchors][:, None]
-        along = np.gradient(strands.points, axis=1)
-        along /= np.maximum(np.linalg.norm(along, axis=2, keepdims=True), 1e-9)
-        t = np.broadcast_to(np.linspace(0, 1, points, dtype=np.float32), (count, points))
-        radii = np.repeat(strands.radii[:, None], points, axis=1)
-        paint = np.repeat(strands.paint[:, None], points, axis=1)
-        rows = np.concatenate([offsets, along, np.stack([t, radii, strands.cover], axis=2), paint], axis=2)
-        floats = np.repeat(rows.reshape(count * points, -1), 2, axis=0).astype(np.float32)
-        sides = np.tile(np.array([-1.0, 1.0], np.float32), count * points)[:, None]
-        anchors = np.repeat(strands.anchors, 2 * points).astype(np.int32)
-        program["lift"].value = _LIFT, _DEEP
-        self._layout = [
-            (context.buffer(anchors.tobytes()), "1i", "anchor"),
-            (context.buffer(np.concatenate([floats, sides], axis=1).tobytes()), "3f 3f 3f 4f 1f",
-             "offset", "along_rest", "stroke", "paint", "side"),
-        ]  # fmt: skip
+        program["lift"].value = LIFT
+        self._layout = strands.drawn(model.vertices).layout(context, program)
         self._skin = skin_round(model, centre)
         self._arrays: dict[tuple[int, int, int] | None, tuple[Any, int]] = {}
         self._drawn: tuple[Any, int] | None = None
@@ -95,7 +106,7 @@ class StrandArray:
                 chosen = self._chosen(middle_of(sector))
             edge = (len(strands) - strands.fine) * pieces
             solid, fine = chosen[chosen < edge], np.sort(chosen[chosen >= edge])
-            indices = _ribbons(np.concatenate([solid, fine]), pieces)
+            indices = _ribbons(np.concatenate([solid, fine]), pieces).ravel()
             array = self._context.vertex_array(self.program, self._layout, self._context.buffer(indices.tobytes()))
             self._arrays[sector] = array, 6 * len(solid)
         return self._arrays[sector]
@@ -108,7 +119,7 @@ class StrandArray:
         points = points[near]
         across = np.cross(np.gradient(points, axis=1), unit_rows(points.reshape(-1, 3)).reshape(points.shape) + towards)
         across *= _REACH * strands.radii[near, None, None] / np.maximum(np.linalg.norm(across, axis=2), 1e-9)[..., None]
-        lift = _LIFT * np.maximum(strands.cover[near] - _DEEP, 0)
+        lift = LIFT[0] * np.maximum(strands.cover[near] - LIFT[1], 0)
         seen = unhidden(points, across.astype(np.float32), lift, self._skin, eye)
         return np.asarray(near[seen // pieces] * pieces + seen % pieces)
 
@@ -141,7 +152,7 @@ def middle_of(sector: tuple[int, int, int]) -> Doubles:
 def _ribbons(chosen: Chosen, pieces: int) -> Indices:
     """Two triangles for each of the pieces ``strand * pieces + piece``."""
     first = 2 * (chosen // pieces * (pieces + 1) + chosen % pieces)
-    return np.asarray((first[:, None] + np.array([0, 1, 2, 1, 3, 2])).ravel().astype(np.int32))
+    return np.asarray((first[:, None] + np.array([0, 1, 2, 1, 3, 2])).reshape(-1, 3).astype(np.int32))
 
 
 def nearest_vertices(points: Doubles, vertices: Floats) -> Indices:

@@ -10,6 +10,7 @@ import numpy as np
 from agentface.conventions import SIDES, Floats, Indices
 from agentface.head.model import HeadModel
 from agentface.head.ring_names import LidRing
+from agentface.view.gl.drawn_mesh import DrawnMesh
 
 _LINING_DEPTHS = ((0.0, 1.0), (0.004, 0.98), (0.012, 0.90))
 
@@ -24,18 +25,23 @@ class Anchored:
     anchors: Indices
     material: Floats
 
+    def drawn(self, skin: Floats) -> DrawnMesh:
+        """For ``shaders/anchored.vert.glsl`` and ``cap.vert.glsl``, on the ``skin (V, 3)`` m at rest."""
+        return DrawnMesh.of(
+            self.triangles,
+            anchors=self.anchors,
+            offset=self.vertices - skin[self.anchors].mean(1),
+            facing=self.normals,
+            rest=self.vertices,
+            material=self.material,
+        )
+
 
 class AnchoredArray:
     """An anchored mesh on the GPU."""
 
     def __init__(self, context: Any, program: Any, mesh: Anchored, skin: Floats) -> None:
-        offsets = mesh.vertices - skin[mesh.anchors].mean(1)
-        rows = np.concatenate([offsets, mesh.normals, mesh.vertices, mesh.material], axis=1).astype(np.float32)
-        layout = [
-            (context.buffer(mesh.anchors.astype(np.int32).tobytes()), "4i", "anchors"),
-            (context.buffer(rows.tobytes()), "3f 3f 3f 4f", "offset", "facing", "rest", "material"),
-        ]
-        self.array = context.vertex_array(program, layout, context.buffer(mesh.triangles.astype(np.int32).tobytes()))
+        self.array = mesh.drawn(skin).array(context, program)
 
     def draw(self) -> None:
         """Draw it where the skin is."""

@@ -10,10 +10,12 @@ from agentface.conventions import Floats
 from agentface.deform.geometry import FaceGeometry
 from agentface.head.model import HeadModel
 from agentface.head.ring_names import LipRing
-from agentface.view.parts.rigid import RigidPart
+from agentface.view.gl.drawn_mesh import DrawnMesh
+from agentface.view.parts.rigid import RigidPart, rigid_mesh
 from agentface.view.parts.teeth import crown_places
 
-_SHADED = 0.25  # of the light on the lower jaw, which the upper lip and the nose keep off
+PARTS = "teeth_upper", "teeth_lower", "tongue"
+SHADED = 0.25  # of the light on the lower jaw, which the upper lip and the nose keep off
 _COLUMNS = np.linspace(0.2, 0.8, 7)  # where the gap is looked at: parts of the way from corner to corner
 _PURSED = 0.1  # of the mouth's width at rest, by which it is narrower where it is all pursed
 _MIDDLE = len(_COLUMNS) // 2
@@ -23,8 +25,28 @@ class Mouth:
     """What is behind the lips, on the GPU."""
 
     def __init__(self, context: Any, program: Any, model: HeadModel) -> None:
-        self._model, self._program = model, program
-        self._parts = {name: _part(context, program, model, name) for name in ("teeth_upper", "teeth_lower", "tongue")}
+        self._program = program
+        self._parts = {name: RigidPart(context, program, mouth_mesh(model, name)) for name in PARTS}
+        self._opening = MouthOpening(model)
+
+    def draw(self, geometry: FaceGeometry) -> None:
+        """Draw it as ``geometry`` has it."""
+        self._program["shaded"].value = 0.0
+        self._parts["teeth_upper"].draw(geometry.head)
+        self._program["shaded"].value = SHADED
+        self._parts["tongue"].reshape(geometry.tongue)
+        for name in ("teeth_lower", "tongue"):
+            self._parts[name].draw(geometry.head @ geometry.jaw)
+
+    def opening(self, geometry: FaceGeometry) -> dict[str, object]:
+        """The uniforms of ``shaders/mouth.glsl``."""
+        return self._opening.uniforms(geometry.vertices)
+
+
+class MouthOpening:
+    """How far the mouth is open, by the vertices of the lips."""
+
+    def __init__(self, model: HeadModel) -> None:
         ring = model.lips.rings[LipRing.LINING]
         self._corners = ring.upper[0], ring.upper[-1]
         touching = model.lips.rings[: LipRing.RED + 1]
@@ -35,19 +57,23 @@ class Mouth:
         self._bow = 1.0 - (2.0 * _COLUMNS - 1.0) ** 2  # an opening between two bows
         self._at_rest = self._gap(*self._edges(model.vertices))
         self._half_at_rest = self._half(model.vertices)
+        self._opened = 0.12 * model.landmarks.eye_separation
 
-    def draw(self, geometry: FaceGeometry) -> None:
-        """Draw it as ``geometry`` has it."""
-        self._program["shaded"].value = 0.0
-        self._parts["teeth_upper"].draw(geometry.head)
-        self._program["shaded"].value = _SHADED
-        self._parts["tongue"].reshape(geometry.tongue)
-        for name in ("teeth_lower", "tongue"):
-            self._parts[name].draw(geometry.head @ geometry.jaw)
+    def record(self) -> dict[str, Any]:
+        """What the same numbers are made of elsewhere."""
+        return {
+            "corners": np.array(self._corners, np.int32),
+            "upper": self._upper,
+            "lower": self._lower,
+            "bow": self._bow,
+            "gap_at_rest": self._at_rest,
+            "half_at_rest": self._half_at_rest,
+            "opened": self._opened,
+            "pursed": _PURSED,
+        }
 
-    def opening(self, geometry: FaceGeometry) -> dict[str, object]:
-        """The uniforms of ``shaders/mouth.glsl``."""
-        vertices = geometry.vertices
+    def uniforms(self, vertices: Floats) -> dict[str, object]:
+        """The uniforms of ``shaders/mouth.glsl``, with the skin at ``vertices (V, 3)`` m."""
         half = self._half(vertices)
         front = 0.5 * float(vertices[self._upper[0], 2].mean() + vertices[self._lower[0], 2].mean())
         corner = vertices[list(self._corners), 1:].mean(0)
@@ -69,18 +95,18 @@ class Mouth:
 
     def _light(self, gap: float) -> float:
         """The part of the light that reaches the teeth: all through a mouth open by a finger, little through a slit."""
-        opened = (gap - self._at_rest) / (0.12 * self._model.landmarks.eye_separation)
-        return min(1.0, 0.03 + 0.97 * max(0.0, opened))
+        return min(1.0, 0.03 + 0.97 * max(0.0, (gap - self._at_rest) / self._opened))
 
     def _gap(self, upper: Floats, lower: Floats) -> float:
         """How high the middle of an opening between two bows is that lets through as much as these edges do, m."""
         return float(np.maximum(upper - lower, 0.0) @ self._bow / (self._bow @ self._bow))
 
 
-def _part(context: Any, program: Any, model: HeadModel, name: str) -> RigidPart:
+def mouth_mesh(model: HeadModel, name: str) -> DrawnMesh:
+    """One of :data:`PARTS` for ``shaders/part.vert.glsl``."""
     mesh = model.parts[name]
     material = mesh.attributes["_MATERIAL"].astype(np.float32) / np.float32(255)
     material[:, 3] = 0.0
     positions = mesh.attributes["POSITION"]
     detail = crown_places(positions, mesh.triangles, material[:, 0])
-    return RigidPart(context, program, positions, mesh.triangles, material, detail)
+    return rigid_mesh(positions, mesh.triangles, material, detail)

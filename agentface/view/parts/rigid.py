@@ -11,30 +11,21 @@ from agentface.deform.geometry import FaceGeometry
 from agentface.head.model import HeadModel
 from agentface.head.ring_names import LidRing
 from agentface.mesh.normals import vertex_normals
+from agentface.view.gl.drawn_mesh import DrawnMesh
+
+IRIS_RADIUS = 0.405
+"""In radii of the eyeball."""
 
 
 class RigidPart:
     """A mesh on the GPU: position, normal and material of each vertex, and where it lies on a tooth or shirt."""
 
-    def __init__(
-        self, context: Any, program: Any, vertices: Floats, triangles: Indices, material: Floats, detail: Floats
-    ) -> None:
+    def __init__(self, context: Any, program: Any, mesh: DrawnMesh) -> None:
         self.program = program
-        self._triangles, self._shown = triangles, vertices.copy()
-        fields: dict[str, Floats] = {
-            "place": vertices,
-            "rest": vertices,
-            "facing": vertex_normals(vertices, triangles).astype(np.float32),
-            "material": material,
-            "detail": detail,
-        }
-        self._buffers = {
-            name: (context.buffer(field.astype(np.float32).tobytes()), f"{field.shape[1]}f")
-            for name, field in fields.items()
-            if name in program  # a compiler drops what a shader does not use
-        }
-        layout = [(buffer, form, name) for name, (buffer, form) in self._buffers.items()]
-        self.array = context.vertex_array(program, layout, context.buffer(triangles.astype(np.int32).tobytes()))
+        self._triangles, self._shown = mesh.triangles, mesh.fields["place"].copy()
+        layout = mesh.layout(context, program, partly=True)
+        self._buffers = {name: buffer for buffer, _, name in layout}
+        self.array = context.vertex_array(program, layout, context.buffer(mesh.triangles.tobytes()))
 
     def reshape(self, vertices: Floats) -> None:
         """Give it other ``vertices (P, 3)``; the same as before cost nothing."""
@@ -43,7 +34,7 @@ class RigidPart:
         self._shown[:] = vertices
         facing = vertex_normals(vertices, self._triangles).astype(np.float32)
         for name, field in (("place", self._shown), ("facing", facing)):
-            self._buffers[name][0].write(field.tobytes())
+            self._buffers[name].write(field.tobytes())
 
     def draw(self, moved: Floats) -> None:
         """Draw it moved by ``(4, 4)``."""
@@ -57,13 +48,8 @@ class Eyeball:
     def __init__(self, context: Any, program: Any, model: HeadModel, side: str) -> None:
         self.program, self.index = program, "lr".index(side)
         self.centre, self.radius = model.eye_centre(side), np.float32(model.eyes.radius)
-        mesh = model.parts[f"eye_{side}"]
-        places = (mesh.attributes["POSITION"] - self.centre) / self.radius
-        rows = np.concatenate([places, vertex_normals(places, mesh.triangles)], axis=1).astype(np.float32)
-        layout = [(context.buffer(rows.tobytes()), "3f 3f", "place", "facing")]
-        self.array = context.vertex_array(program, layout, context.buffer(mesh.triangles.tobytes()))
-        ring = model.eyelids.rings[side][LidRing.WET_LINE]
-        self.lids = [np.array(half, np.int32) for half in (ring.upper, ring.lower)]
+        self.array = eyeball_mesh(model, side).array(context, program)
+        self.lids = lid_margins(model, side)
 
     def draw(self, geometry: FaceGeometry) -> None:
         """Draw it as ``geometry`` has it."""
@@ -82,6 +68,25 @@ class Eyeball:
         self.program["radius"].value = float(self.radius)
         self.program["dilation"].value = float(geometry.pupils[self.index])
         self.array.render()
+
+
+def rigid_mesh(vertices: Floats, triangles: Indices, material: Floats, detail: Floats) -> DrawnMesh:
+    """For ``shaders/part.vert.glsl`` and ``cloth.vert.glsl``: ``vertices (P, 3)`` m at rest."""
+    facing = vertex_normals(vertices, triangles)
+    return DrawnMesh.of(triangles, place=vertices, rest=vertices, facing=facing, material=material, detail=detail)
+
+
+def eyeball_mesh(model: HeadModel, side: str) -> DrawnMesh:
+    """For ``shaders/eye.vert.glsl``: in radii from the eye's centre."""
+    mesh = model.parts[f"eye_{side}"]
+    places = (mesh.attributes["POSITION"] - model.eye_centre(side)) / np.float32(model.eyes.radius)
+    return DrawnMesh.of(mesh.triangles, place=places, facing=vertex_normals(places, mesh.triangles))
+
+
+def lid_margins(model: HeadModel, side: str) -> list[Indices]:
+    """The skin's vertices along the edges of the upper and the lower lid, which shade the eye."""
+    ring = model.eyelids.rings[side][LidRing.WET_LINE]
+    return [np.array(half, np.int32) for half in (ring.upper, ring.lower)]
 
 
 def _parabola(x: Floats, y: Floats) -> list[float]:

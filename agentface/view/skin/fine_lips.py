@@ -5,6 +5,8 @@ A fine vertex is an edge with both ends at itself, so the shaders of the refined
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import numpy.typing as npt
 
@@ -95,6 +97,24 @@ class FineLips:
         mixed = self._own * own + (1 - self._own) * smooth
         mixed /= np.maximum(np.linalg.norm(mixed, axis=1, keepdims=True), 1e-12)
         return np.asarray(places, np.float32), np.asarray(mixed, np.float32)
+
+    def record(self) -> dict[str, Any]:
+        """What :meth:`update` is made of."""
+        fine, (controls, weight) = self._fine, self._of_patch
+        return {
+            "patch": self._patch,
+            "fit": self._fit,
+            "patch_controls": controls,
+            "patch_weight": weight,
+            "rings": fine.rings,
+            "columns": fine.columns,
+            "share_of": fine.patch,
+            "share": fine.share,
+            "controls": fine.controls,
+            "weight": fine.weight,
+            "rest": self._rest_fine,
+            "own": self._own[:, 0],
+        }
 
     def _edge_ends(self) -> dict[int, tuple[int, int]]:
         """For fine vertices on the patch's edge the two ends of the skin's edge whose middle, or end, they are."""

@@ -12,6 +12,7 @@ from agentface.deform.geometry import FaceGeometry
 from agentface.errors import InvalidValueError
 from agentface.head.model import HeadModel
 from agentface.mesh.refine import Refined, refine, unrefined
+from agentface.view.gl.drawn_mesh import DrawnMesh
 from agentface.view.skin.complexion import blurred, softened_corners
 from agentface.view.skin.fine_lips import FineLips
 from agentface.view.skin.shirt import uncovered
@@ -56,14 +57,14 @@ class SkinFields:
 
 
 class SkinMeshes:
-    """The skin's static buffers, as it is and finer; drawn where ``SkinFields`` has it.
+    """The skin's static fields, as it is and finer; drawn where ``SkinFields`` has it.
 
-    ``dressed``: those that the look makes, ``(V, 1..4)`` by the names of ``shaders/skin_place.glsl``.
+    ``dressed``: those that the look makes, ``(V, 1..4)`` by the names of ``shaders/skin_place.glsl``. ``extended``: all
+    of them, with the fine lips behind.
     """
 
-    def __init__(self, context: Any, model: HeadModel, lips: FineLips, dressed: dict[str, Floats]) -> None:
-        self._context, self._model, self._lips = context, model, lips
-        self._triangles = uncovered(model)
+    def __init__(self, model: HeadModel, lips: FineLips, dressed: dict[str, Floats]) -> None:
+        self._model, self._lips, self._triangles = model, lips, uncovered(model)
         fields = {
             "rest": model.vertices,
             "soft_normal": blurred(model.normals, model.triangles, _BLUR),
@@ -71,44 +72,37 @@ class SkinMeshes:
             "material": softened_corners(model),
             **dressed,
         }
-        self._fields = [(name, field, lips.extended(field)) for name, field in fields.items()]
+        self._fields = fields
+        self.extended = {name: lips.extended(field) for name, field in fields.items()}
 
-    def coarse(self, programs: tuple[Any, Any]) -> Skin:
+    def coarse(self) -> DrawnMesh:
         """The skin as it is."""
-        mesh = unrefined(self._triangles, len(self._model.vertices))
-        return self._skin(programs, mesh, [(name, field) for name, field, _ in self._fields])
+        return _drawn(unrefined(self._triangles, len(self._model.vertices)), self._fields)
 
-    def fine(self, programs: tuple[Any, Any], longest_m: float) -> Skin:
+    def fine(self, longest_m: float) -> DrawnMesh:
         """With edges longer than ``longest_m`` cut and curved, and the lips on their spline."""
+        return _drawn(self.refined(longest_m), self.extended)
+
+    def refined(self, longest_m: float) -> Refined:
+        """How :meth:`fine` is cut: its vertices between those of :attr:`extended`."""
 
         def cut(edges: Indices) -> npt.NDArray[np.bool_]:
             a, b = self._model.vertices[edges[:, 0]], self._model.vertices[edges[:, 1]]
             return np.asarray((np.linalg.norm(a - b, axis=1) > longest_m) | self._lips.has_edges(edges))
 
-        mesh = self._lips.mesh(refine(self._triangles, len(self._model.vertices), cut))
-        return self._skin(programs, mesh, [(name, extended) for name, _, extended in self._fields])
+        return self._lips.mesh(refine(self._triangles, len(self._model.vertices), cut))
 
-    def _skin(self, programs: tuple[Any, Any], mesh: Refined, fields: list[tuple[str, Floats]]) -> Skin:
-        buffers = [("ends", "2i", self._context.buffer(mesh.ends.tobytes()))]
-        for name, field in fields:
-            buffers.append((name, f"{field.shape[1]}f", self._context.buffer(mesh.mean(field).tobytes())))
-        return Skin(self._context, programs, buffers, mesh.triangles)
+
+def _drawn(mesh: Refined, fields: dict[str, Floats]) -> DrawnMesh:
+    return DrawnMesh.of(mesh.triangles, ends=mesh.ends, **{name: mesh.mean(field) for name, field in fields.items()})
 
 
 class Skin:
     """A mesh of the skin, smooth or with the wrinkles that the mesh has no vertices for."""
 
-    def __init__(
-        self, context: Any, programs: tuple[Any, Any], buffers: list[tuple[str, str, Any]], triangles: Indices
-    ) -> None:
+    def __init__(self, context: Any, programs: tuple[Any, Any], mesh: DrawnMesh) -> None:
         self._context = context
-        corners = context.buffer(triangles.astype(np.int32).tobytes())
-        self._arrays = [
-            context.vertex_array(
-                program, [(data, form, name) for name, form, data in buffers if name in program], corners
-            )
-            for program in programs
-        ]
+        self._arrays = [mesh.array(context, program, partly=True) for program in programs]
 
     def draw(self, *, wrinkled: bool) -> None:
         """Draw what faces the camera of it, where ``SkinFields`` has it."""

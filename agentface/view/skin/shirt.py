@@ -6,6 +6,8 @@ import numpy as np
 
 from agentface.conventions import Doubles, Floats, Indices
 from agentface.head.model import HeadModel
+from agentface.view.gl.drawn_mesh import DrawnMesh
+from agentface.view.parts.rigid import rigid_mesh
 
 _AROUND, _ROWS = 72, 16
 _SHOULDER = (0.215, 0.105)
@@ -41,6 +43,12 @@ def shirt(model: HeadModel) -> tuple[Floats, Indices, Floats]:
     away = np.repeat(np.concatenate([[0.0, *np.cumsum(steps)]]) - steps[0], _AROUND)
     weave = np.stack([np.tile(np.minimum(turn, 2 * np.pi - turn), len(rows)), away], axis=1)
     return vertices, np.concatenate(quads)[:, ::-1].astype(np.int32), weave.astype(np.float32)
+
+
+def shirt_mesh(model: HeadModel) -> DrawnMesh:
+    """The shirt for ``shaders/cloth.vert.glsl``."""
+    vertices, triangles, weave = shirt(model)
+    return rigid_mesh(vertices, triangles, np.zeros((len(vertices), 4), np.float32), weave)
 
 
 def uncovered(model: HeadModel) -> Indices:

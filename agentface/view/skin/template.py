@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from agentface.conventions import Bytes, Indices
+from agentface.conventions import Bytes, Floats, Indices
 from agentface.head.look import Look
 from agentface.head.model import HeadModel
 from agentface.head.skin_image import bled
@@ -20,18 +20,21 @@ _INSIDE = 0.9  # of the material: nothing is left of the skin's own colour
 _MARGIN = 2  # pixels beyond the skin's edge, so that filtering finds skin there
 
 
-def skin_template(model: HeadModel, look: Look, size: int = 2048, context: Any = None) -> Bytes:
+def skin_template(
+    model: HeadModel, look: Look, size: int = 2048, context: Any = None, tints: Floats | None = None
+) -> Bytes:
     """The skin of ``look`` as a picture ``(size, size, 4)`` uint8 sRGB, transparent where the face has no skin.
 
     Without what is drawn over a texture: hair, the inside of the mouth, light, the fine noise of the skin. Where layers
-    of skin lie on one another (ears, the inside of the lips) the outermost is seen.
+    of skin lie on one another (ears, the inside of the lips) the outermost is seen. ``tints (V, 4)`` are what
+    :func:`complexion` gives, of skin without hair and beard when None.
 
     Raises GraphicsError when there is no OpenGL.
     """
     ownership = Ownership(context)
     try:
         with ownership.current():
-            drawn = _drawn(ownership.maker, model, look, size)
+            drawn = _drawn(ownership.maker, model, look, size, tints)
     finally:
         ownership.release()
     image = bled(drawn)
@@ -46,7 +49,7 @@ def flat_triangles(model: HeadModel) -> Indices:
     return np.asarray(triangles[shown[triangles].any(axis=1)])
 
 
-def _drawn(context: Any, model: HeadModel, look: Look, size: int) -> Bytes:
+def _drawn(context: Any, model: HeadModel, look: Look, size: int, tints: Floats | None) -> Bytes:
     program = compile_program(context, "unwrap.vert.glsl", "unwrap.frag.glsl")
     values: dict[str, Any] = {
         "skin_tone": look.skin.tone,
@@ -57,8 +60,8 @@ def _drawn(context: Any, model: HeadModel, look: Look, size: int) -> Bytes:
     for name, value in values.items():
         if name in program:
             program[name].value = tuple(value)
-    bald = np.zeros(len(model.vertices), np.float32)
-    fields = {"rest": model.vertices, "uv": model.uv, "material": model.material, "complexion": complexion(model, bald)}
+    bare = complexion(model, np.zeros(len(model.vertices), np.float32)) if tints is None else tints
+    fields = {"rest": model.vertices, "uv": model.uv, "material": model.material, "complexion": bare}
     layout = [
         (context.buffer(np.ascontiguousarray(field, np.float32).tobytes()), f"{field.shape[1]}f", name)
         for name, field in fields.items()

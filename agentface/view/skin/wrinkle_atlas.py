@@ -26,20 +26,15 @@ class WrinkleAtlas:
 
     Args:
         towards_key: ``(3,)`` unit vector to the key light, as the face at rest sees it.
-        rng: draws the skin's grain.
+        grain: ``(S, S)`` of :func:`skin_grain`.
     """
 
-    def __init__(self, context: Any, model: HeadModel, towards_key: Doubles, rng: np.random.Generator) -> None:
-        at = model.landmarks
-        self.height = (
-            float(at["menton"][1]) - _BELOW * at.eye_separation,
-            float(at["hairline_middle"][1]) + _ABOVE * at.eye_separation,
-        )
-        self.patches = model.derived("view.wrinkle_patches", lambda face: patches(context, face, self.height))
+    def __init__(self, context: Any, model: HeadModel, towards_key: Doubles, grain: Relief) -> None:
+        self.height, self.patches = atlas_height(model), atlas_patches(model)
         self._reliefs = [patch.texels(towards_key) for patch in self.patches]
         self.heights = np.zeros((SIDE, SIDE), np.float32)
         self._smooth = np.full((SIDE, SIDE, 4), _EVEN, np.int16)
-        self._smooth[..., 3] += _grain(rng)
+        self._smooth[..., 3] += grain
         self.texels = self._smooth.astype(np.uint8)
         self._even = _pixels(self.texels.copy())
         self._levels = np.zeros(len(self.patches), np.float32)
@@ -91,7 +86,19 @@ def _pixels(texels: npt.NDArray[np.uint8]) -> npt.NDArray[np.uint32]:
     return texels.view(np.uint32)[..., 0]
 
 
-def _grain(rng: np.random.Generator) -> Relief:
+def atlas_height(model: HeadModel) -> tuple[float, float]:
+    """The heights between which the atlas lies, m."""
+    at = model.landmarks
+    chin, hairline = float(at["menton"][1]), float(at["hairline_middle"][1])
+    return chin - _BELOW * at.eye_separation, hairline + _ABOVE * at.eye_separation
+
+
+def atlas_patches(model: HeadModel) -> list[Patch]:
+    """The wrinkle trains of a face on its atlas."""
+    return model.derived("view.wrinkle_patches", lambda face: patches(face, atlas_height(face)))
+
+
+def skin_grain(rng: np.random.Generator) -> Relief:
     """``(S, S)``: how uneven the skin is; even where the atlas ends."""
     noise = rng.uniform(-1.0, 1.0, (SIDE, SIDE))
     for _ in range(2):

@@ -14,7 +14,6 @@ from agentface.head.model import HeadModel
 from agentface.head.trains import relief
 from agentface.head.wrinkles import PlacedTrain
 from agentface.mesh.smoothstep import smoothstep
-from agentface.view.gl.context import compile_program
 
 Relief = npt.NDArray[np.int16]
 
@@ -85,32 +84,42 @@ class Patch:
         return np.asarray(-risen / (np.maximum(facing, -0.2) + 0.8), np.float32)
 
 
-def _layers(context: Any, model: HeadModel, height: tuple[float, float]) -> tuple[Indices, Floats]:
-    """``(S, S)`` the triangle at each texel or -1, and ``(S, S, 3)`` the barycentric coordinates in it."""
-    program = compile_program(context, "atlas.vert.glsl", "atlas.frag.glsl")
-    program["atlas_height"].value = height
-    azimuth = np.arctan2(model.vertices[:, 0], model.vertices[:, 2])[model.triangles]
-    ahead = np.flatnonzero(np.abs(azimuth).max(axis=1) < _FAR_ROUND)
-    corners = np.tile(np.array([[1, 0], [0, 1], [0, 0]], np.float32), (len(ahead), 1))
-    rest = context.buffer(model.vertices[model.triangles[ahead].ravel()].tobytes())
-    layout = [(rest, "3f", "rest"), (context.buffer(corners.tobytes()), "2f", "corner")]
-    target = context.framebuffer(context.texture((SIDE, SIDE), 4, dtype="f4"), context.depth_renderbuffer((SIDE, SIDE)))
-    target.use()
-    target.clear(0.0, 0.0, 0.0, 0.0)
-    context.enable_only(context.DEPTH_TEST)
-    context.vertex_array(program, layout).render()
-    found = np.frombuffer(target.read(components=4, dtype="f4"), np.float32).reshape(SIDE, SIDE, 4)
-    target.release()
-    triangle = np.where(found[..., 3] > 0.5, ahead[np.round(found[..., 2]).astype(np.int32)], -1).astype(np.int32)
-    shares = np.concatenate([found[..., :2], 1.0 - found[..., 0:1] - found[..., 1:2]], axis=2)
-    return triangle, shares
+def _outermost(model: HeadModel, height: tuple[float, float]) -> tuple[Indices, Indices, Doubles]:
+    """The texels ``(N,)`` that skin covers, in their order, the outermost triangle ``(N,)`` there, and the shares
+    ``(N, 3)`` of its corners in the middle of the texel.
+    """
+    radius, azimuth = np.hypot(*model.vertices[:, [0, 2]].T), np.arctan2(*model.vertices[:, [0, 2]].T)
+    share = (model.vertices[:, 1] - height[0]) / (height[1] - height[0])
+    place = np.stack([0.5 + 0.5 * azimuth / _AZIMUTH, share], axis=1).astype(np.float64) * SIDE - 0.5
+    ahead = np.flatnonzero(np.abs(azimuth[model.triangles]).max(axis=1) < _FAR_ROUND)
+    corners = place[model.triangles[ahead]]
+    low = np.clip(np.ceil(corners.min(axis=1)), 0, SIDE).astype(np.int64)
+    wide, high = np.clip(np.floor(corners.max(axis=1)).astype(np.int64) + 1 - low, 0, SIDE - low).T
+    # every texel of the box round every triangle
+    mine = np.repeat(np.arange(len(ahead)), wide * high)
+    within = np.arange(len(mine)) - np.repeat(np.cumsum(wide * high) - wide * high, wide * high)
+    column, row = low[mine, 0] + within % wide[mine], low[mine, 1] + within // wide[mine]
+    a, b, c = (corners[mine, corner] for corner in range(3))
+    area = _cross(b - a, c - a)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        at = np.stack([column, row], axis=1)
+        sides = [_cross(b - at, c - at), _cross(c - at, a - at), _cross(a - at, b - at)]
+        shares = np.stack(sides, axis=1) / area[:, None]
+    inside = np.flatnonzero((shares >= 0.0).all(axis=1) & (area != 0.0))
+    texel, shares, mine = (row * SIDE + column)[inside], shares[inside], ahead[mine[inside]]
+    outward = (shares * radius[model.triangles[mine]]).sum(axis=1)
+    order = np.lexsort((-outward, texel))
+    texel, first = np.unique(texel[order], return_index=True)
+    return texel, mine[order][first].astype(np.int32), shares[order][first]
 
 
-def patches(context: Any, model: HeadModel, height: tuple[float, float]) -> list[Patch]:
+def _cross(one: Doubles, other: Doubles) -> Doubles:
+    return np.asarray(one[:, 0] * other[:, 1] - one[:, 1] * other[:, 0])
+
+
+def patches(model: HeadModel, height: tuple[float, float]) -> list[Patch]:
     """Those of all trains, on an atlas between two heights in metres."""
-    triangle, shares = _layers(context, model, height)
-    covered = np.flatnonzero(triangle.ravel() >= 0)
-    triangles, shares = triangle.ravel()[covered], shares.reshape(-1, 3)[covered]
+    covered, triangles, shares = _outermost(model, height)
     corners = model.triangles[triangles]
     points = np.einsum("nc,ncx->nx", shares, model.vertices[corners])
     normals = np.einsum("nc,ncx->nx", shares, model.normals[corners])

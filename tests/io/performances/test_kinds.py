@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import tracemalloc
 from pathlib import Path
 
@@ -77,14 +78,14 @@ def test_files_that_are_not_there_or_no_files_are_told(tmp_path):
         assert caught.value.faults[0].file == path
 
 
-TOKENS = [b"nan", b"-1", b"1e999", b"\n", b",", b"\0", b'"', b"9" * 400, b"[", b"{}", b"null"]
+TOKENS = [b"nan", b"-1", b"1e999", b"1e99", b"\n", b",", b"\0", b'"', b"9" * 400, b"[", b"{}", b"null"]
 BROKEN = st.one_of(
     st.tuples(st.just("cut"), st.floats(0, 1)),
     st.tuples(st.just("put"), st.floats(0, 1), st.binary(max_size=20)),
     st.tuples(
         st.just("put"),
         st.floats(0, 1),
-        st.sampled_from([b"nan", b"-1", b"1e999", b"\n", b",", b"\0", b'"', b"9" * 400]),
+        st.sampled_from([b"nan", b"-1", b"1e999", b"1e99", b"\n", b",", b"\0", b'"', b"9" * 400]),
     ),
     st.tuples(st.just("drop"), st.floats(0, 1), st.integers(1, 60)),
     st.tuples(st.just("again"), st.floats(0, 1), st.integers(1, 200)),
@@ -120,6 +121,14 @@ def try_it(path, data):
     assert all(fault.file == path and fault.expected and str(fault).startswith(str(path)) for fault in faults)
     if not path.name.startswith("emotionml"):
         assert len(faults) <= 20
+
+
+def test_numbers_that_no_float32_holds_are_told_or_limited(kind, tmp_path):
+    if kind == "poses-npz":
+        return  # tests/io/performances/test_poses.py
+    good = GOOD[kind]
+    for number in re.finditer(rb"-?[0-9]+(\.[0-9]+)?", good):
+        try_it(tmp_path / kind, good[: number.start()] + b"-1e99"[number.start() % 2 :] + good[number.end() :])
 
 
 FUZZ = settings(suppress_health_check=[HealthCheck.function_scoped_fixture])

@@ -182,6 +182,7 @@ def test_what_numpy_has_compressed_is_read():
         ({"poses": np.array([["a", "b"]])}, "poses: expected numbers"),
         ({"poses": np.zeros((0, 2))}, "poses: expected numbers of shape (frames, 2)"),
         ({"poses": np.full((3, 2), np.nan)}, "poses.0.0: expected 0..1 for jaw_open, got nan"),
+        ({"poses": np.full((3, 2), 1e99)}, "poses.0.0: expected 0..1 for jaw_open, got 1e+99"),
         ({"parameters": [b"jaw_open", b"head_yaw"]}, "parameters: expected a list of names"),
         ({"parameters": [["jaw_open", "head_yaw"]]}, "parameters: expected a list of names"),
         ({"version": [1]}, "version: expected 1"),

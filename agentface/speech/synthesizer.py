@@ -1,4 +1,4 @@
-""":class:`Speaker`: voices at work in a thread of their own, so that no frame waits for them."""
+""":class:`Synthesizer`: voices at work in a thread of their own, so that no frame waits for them."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ class Done:
     last: bool
 
 
-class Speaker:
+class Synthesizer:
     """Speaks orders in their turn, sentence by sentence, from the first one until ``close``.
 
     An order of which a sentence cannot be spoken ends there.
@@ -147,6 +147,6 @@ class Speaker:
             with self._changed:
                 if self._closed:
                     voice.close()
-                    raise SpeechError("expected a speaker that is not closed, got one after close()")
+                    raise SpeechError("expected a synthesizer that is not closed, got one after close()")
                 self._voices[key] = voice
         return self._voices[key]

@@ -1,0 +1,70 @@
+"""The sink that keeps of a running face what an animation needs."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Protocol
+
+import numpy as np
+
+from agentface.conventions import Doubles, Floats
+from agentface.head.model import HeadModel
+from agentface.io.gltf.face_parts import released
+from agentface.io.gltf.surface import Surface
+from agentface.live.loop import Frame
+
+
+class RowTaker(Protocol):
+    """Takes the movements of the surface, frame by frame."""
+
+    def add(self, row: Doubles) -> None:
+        """Take ``(3 N,)`` m."""
+
+
+class SurfaceRecorder:
+    """Gives each frame's movement to ``taker``, and keeps the turns of the head and the eyes.
+
+    Attributes:
+        told: gets the time of each frame in seconds.
+        times_s: ``(T,)`` seconds.
+        heads: ``(T, 3, 3)`` the head's turns.
+        eyes: ``(T, 2, 3, 3)`` the eyes'.
+        thrusts: ``(T, 2)`` m, how far the eyes come forward.
+    """
+
+    def __init__(self, model: HeadModel, surface: Surface, taker: RowTaker) -> None:
+        self._model, self._surface, self._taker = model, surface, taker
+        self.told: Callable[[float], object] = lambda _: None
+        self._times: list[float] = []
+        self._turns: list[tuple[Floats, Floats, Floats]] = []
+
+    def show(self, frame: Frame) -> None:
+        """Take one frame."""
+        geometry = frame.geometry
+        self._taker.add(self._surface.row(released(self._model, geometry)))
+        self._times.append(frame.time_s)
+        self._turns.append((geometry.head[:3, :3].copy(), geometry.eye_rotations.copy(), geometry.eye_thrust.copy()))
+        self.told(frame.time_s)
+
+    def __len__(self) -> int:
+        return len(self._times)
+
+    @property
+    def times_s(self) -> Doubles:
+        """``(T,)``."""
+        return np.array(self._times)
+
+    @property
+    def heads(self) -> Floats:
+        """``(T, 3, 3)``."""
+        return np.stack([head for head, _, _ in self._turns])
+
+    @property
+    def eyes(self) -> Floats:
+        """``(T, 2, 3, 3)``."""
+        return np.stack([eyes for _, eyes, _ in self._turns])
+
+    @property
+    def thrusts(self) -> Floats:
+        """``(T, 2)`` m."""
+        return np.stack([thrust for _, _, thrust in self._turns])

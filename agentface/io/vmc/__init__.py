@@ -1,0 +1,1 @@
+"""The Virtual Motion Capture protocol: faces drive avatars, and trackers drive faces, over OSC."""

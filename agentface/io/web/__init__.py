@@ -1,0 +1,1 @@
+"""A face in a web page: what travels, who may ask, and the server."""

@@ -1,0 +1,1 @@
+"""Colours that shaders make, as pictures and meshes for other programs to draw."""

@@ -1,0 +1,80 @@
+"""The hair of a head as it grows at rest, grown once and kept."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TypeVar
+
+import numpy as np
+
+from agentface.cache import stamp_of
+from agentface.conventions import Doubles, Floats
+from agentface.head.look import HairLook
+from agentface.head.model import HeadModel
+from agentface.view.hair.cap import scalp_cap
+from agentface.view.hair.groom import groom
+from agentface.view.hair.hairline import Hairline
+from agentface.view.hair.hull import Hull
+from agentface.view.hair.sheets import Sheet, edge_shade, flyaways, parting_line, sheets
+from agentface.view.hair.strands import Strands
+from agentface.view.hair.styles import PARTED, STYLES
+from agentface.view.parts.anchored import Anchored
+
+_T = TypeVar("_T")
+_SEED = 20
+_GLOSS = {"cropped": 0.25, "swept": 0.8, "bob": 0.9, "bun": 0.9}
+_NO_PARTING = 1.0, 1.0, 1.0, 1.0
+"""The uniform ``parting`` of ``shaders/cap.frag.glsl``, far from the head."""
+
+
+class GrownHair:
+    """Hair of any style but ``none``, as it grows at rest.
+
+    ``centre (3,)`` m is that of the head; ``sheets`` are long hair, ``parting (4,)`` where it parts, as the uniform of
+    ``shaders/cap.frag.glsl``.
+    """
+
+    def __init__(self, model: HeadModel, look: HairLook) -> None:
+        self._model, self._look = model, look
+        self.centre = np.array([0.0, 0.4 * model.landmarks.eye_separation, -0.012])
+        self.sheets: list[Sheet] = []
+        self.parting: tuple[float, ...] = _NO_PARTING
+        if look.style in PARTED:
+            line, self.sheets = self._kept("sheets", self._grow_sheets)
+            self.parting = tuple(line[[0, 0, -1, -1], [0, 2, 0, 2]].tolist())
+
+    @property
+    def gloss(self) -> float:
+        """How much it shines, 0..1."""
+        return _GLOSS[self._look.style]
+
+    @property
+    def coils(self) -> float:
+        """1 where what one sees of the cap is the hair itself, else 0."""
+        return float(self._look.style == "cropped")
+
+    def cap(self) -> Anchored:
+        """The layer on the scalp."""
+        return scalp_cap(self._model, Hairline(self._model, self._look.hairline), self._look)
+
+    def shade(self, skin: Floats) -> Doubles:
+        """``(V,)`` 0..1: the part of the surroundings' light that hair at the face keeps off the ``skin (V, 3)``."""
+        return edge_shade(self.sheets, skin)
+
+    def strands(self, quality: str) -> Strands:
+        """The strands of a quality."""
+        return self._kept(f"strands.{quality}", lambda: self._grow_strands(quality))
+
+    def _kept(self, name: str, grow_it: Callable[[], _T]) -> _T:
+        return self._model.derived(f"view.{name}.{stamp_of((), repr(self._look))}", lambda _: grow_it())
+
+    def _grow_sheets(self) -> tuple[Doubles, list[Sheet]]:
+        hull = Hull(self._model, ears=True)
+        line = parting_line(self._model, self._look, hull)
+        return line, sheets(self._model, self._look, hull, np.random.default_rng(_SEED))
+
+    def _grow_strands(self, quality: str) -> Strands:
+        model, look, rng = self._model, self._look, np.random.default_rng(_SEED)
+        if self.sheets:
+            return flyaways(self.sheets, STYLES[look.style].amounts[quality], look, rng).in_order(model)
+        return groom(model, model.normals, look, quality, rng)
