@@ -41,6 +41,7 @@ from agentface.requests import (
     SetState,
     ShowViseme,
     Speak,
+    TakeBack,
 )
 from agentface.speech.phones import Phone
 from tests.heads import head_model
@@ -75,6 +76,7 @@ ANY_REQUEST = st.one_of(
     st.builds(SetHead, st.floats(-80, 80), st.floats(-60, 60), st.floats(-50, 50), FADES),
     st.builds(Blink),
     st.builds(Speak, st.sampled_from([(), (Phone("p", 0, 0.1), Phone("aa", 0.1, 0.3))]), FADES, live=st.booleans()),
+    st.builds(TakeBack, st.builds(Speak, st.just((Phone("p", 0, 0.1), Phone("aa", 0.1, 0.3))))),
     st.builds(Hush),
     st.builds(Say, st.sampled_from(("Hello.", "[joy] Yes")), st.none(), st.sampled_from(("en", "de"))),
     st.builds(ShowViseme, st.sampled_from(("aa", "viseme_PP", "iy")), FRACTIONS, st.none() | FADES),
@@ -108,7 +110,7 @@ def test_every_kind_is_tried_here():
         "SetEmotion", "SetEmotions", "Neutral", "SetMuscle", "SetParameter", "SetActionUnit", "SetGaze", "LookAt",
         "SetHead", "Blink", "Play", "SetFap", "SetFaps", "SetArkit", "SetMood", "Speak", "Hush", "ShowViseme",
         "Gesture", "SetLiveliness", "SetState",
-        "Say", "PlayBlock",
+        "Say", "PlayBlock", "TakeBack",
     }  # fmt: skip
 
 

@@ -130,7 +130,7 @@ def test_only_what_is_named_moves():
 def test_all_weights_move_all_that_has_a_shape():
     moves = solver_of("amber").solve(np.zeros(52)).moves
     groups = {known.group for known in map(parameter, NAMES) if not moves[known.index] and known.kind != "contact"}
-    assert groups <= {"ears", "head", "eyes", "tongue", "nose and cheek"}
+    assert groups <= {"ears", "head", "eyes", "tongue", "nose and cheek", "chest"}
     assert moves[list(indices_of("gaze_vergence"))].all()
 
 
