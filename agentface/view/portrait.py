@@ -32,8 +32,8 @@ from agentface.view.hair.strands import LIFT
 from agentface.view.parts.anchored import eye_linings
 from agentface.view.parts.mouth import PARTS, SHADED, MouthOpening, mouth_mesh
 from agentface.view.parts.rigid import IRIS_RADIUS, eyeball_mesh, lid_margins
+from agentface.view.parts.shirt import shirt_mesh
 from agentface.view.skin.meshes import SkinMeshes
-from agentface.view.skin.shirt import shirt_mesh
 from agentface.view.skin.wrinkle_atlas import atlas_height, atlas_patches
 from agentface.view.skin.wrinkle_patches import SIDE
 

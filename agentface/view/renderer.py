@@ -36,8 +36,8 @@ from agentface.view.parts.anchored import AnchoredArray, eye_linings
 from agentface.view.parts.bone import Bone, BoneView
 from agentface.view.parts.mouth import Mouth
 from agentface.view.parts.rigid import IRIS_RADIUS, Eyeball, RigidPart
+from agentface.view.parts.shirt import shirt_mesh
 from agentface.view.skin.meshes import Skin, SkinFields, SkinMeshes
-from agentface.view.skin.shirt import shirt_mesh
 from agentface.view.skin.wrinkle_atlas import WrinkleAtlas
 
 _FRAME_BYTES = 3 * 64 + 11 * 16

@@ -11,7 +11,7 @@ from agentface.deform.finish import chest, chest_compiled
 from agentface.deform.geometry import FaceArrays
 from agentface.parameters import FacePose
 from agentface.resources import face_names
-from agentface.view.skin.shirt import shirt
+from agentface.view.parts.shirt import shirt
 from tests.heads import deformer_of, head_model
 
 

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from agentface.resources import face_names
+from agentface.view.parts.shirt import shirt
 from agentface.view.parts.teeth import crown_places
-from agentface.view.skin.shirt import shirt
 from tests.heads import head_model
 
 

@@ -22,8 +22,9 @@ from agentface.view.hair.hair_mesh import hair_colours, hair_strips, hair_triang
 from agentface.view.hair.ribbons import Hairs
 from agentface.view.hair.sheets import LOCKS
 from agentface.view.parts.anchored import Anchored, eye_linings
+from agentface.view.parts.shirt import shirt
 from agentface.view.parts.teeth import crown_places
-from agentface.view.skin.shirt import shirt, uncovered
+from agentface.view.skin.uncovered import uncovered
 
 Rides: TypeAlias = Literal["skin", "head", "body", "eye_l", "eye_r"]
 """What turns a part: the head and, where it holds on to the neck, the body, as the skin; one of them; an eye."""

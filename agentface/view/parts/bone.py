@@ -11,7 +11,7 @@ from agentface.deform.geometry import FaceGeometry
 from agentface.head.model import HeadModel
 from agentface.mesh.normals import vertex_normals
 from agentface.view.gl.programs import Programs
-from agentface.view.skin.shirt import uncovered
+from agentface.view.skin.uncovered import uncovered
 
 _INSIDE = 0.02
 _JAWS = {"teeth_upper": 0.0, "teeth_lower": 1.0}

@@ -15,7 +15,7 @@ from agentface.mesh.refine import Refined, refine, unrefined
 from agentface.view.gl.drawn_mesh import DrawnMesh
 from agentface.view.skin.complexion import blurred, softened_corners
 from agentface.view.skin.fine_lips import FineLips
-from agentface.view.skin.shirt import uncovered
+from agentface.view.skin.uncovered import uncovered
 
 _COLUMNS = 256
 _BLUR = 14

@@ -14,7 +14,7 @@ from agentface.head.unwrap import unwrap_centre
 from agentface.view.gl.context import compile_program
 from agentface.view.gl.ownership import Ownership
 from agentface.view.skin.complexion import complexion
-from agentface.view.skin.shirt import uncovered
+from agentface.view.skin.uncovered import uncovered
 
 _INSIDE = 0.9  # of the material: nothing is left of the skin's own colour
 _MARGIN = 2  # pixels beyond the skin's edge, so that filtering finds skin there

@@ -51,14 +51,6 @@ def shirt_mesh(model: HeadModel) -> DrawnMesh:
     return rigid_mesh(vertices, triangles, np.zeros((len(vertices), 4), np.float32), weave)
 
 
-def uncovered(model: HeadModel) -> Indices:
-    """``(T, 3)``: the skin's triangles without those that lie under the shirt, whose ragged end could poke through."""
-    chin = float(model.landmarks["menton"][1])
-    forward = np.clip(model.vertices[:, 2] / 0.04 + 1.5, 0, 1)
-    above = model.vertices[:, 1] > chin - 0.036 - 0.060 * forward
-    return np.asarray(model.triangles[above[model.triangles].all(1)])
-
-
 def _row(radius: Doubles, height: Doubles, turn: Doubles, axis_z: float) -> Doubles:
     return np.stack([radius * np.cos(turn), height, axis_z + radius * np.sin(turn)], axis=1)
 
