@@ -35,7 +35,7 @@ def viewer(size: tuple[int, int] = (480, 480)) -> Iterator[Any]:
     with api.sync_playwright() as playwright:
         browser = playwright.chromium.launch(executable_path="/usr/bin/chromium", args=_FLAGS)
         page = browser.new_page(viewport={"width": size[0], "height": size[1]})
-        page.set_default_timeout(120_000)
+        page.set_default_timeout(0)  # a busy machine takes its time
         page.on("pageerror", lambda error: said.append(str(error)))
         page.on("console", lambda line: said.append(line.text) if line.type in ("error", "warning") else None)
 
@@ -52,7 +52,7 @@ def viewer(size: tuple[int, int] = (480, 480)) -> Iterator[Any]:
                 route.fulfill(path=file, content_type=_KINDS.get(file.suffix, "application/octet-stream"))
 
         page.route("**/*", served)
-        page.goto(_ORIGIN)
+        page.goto(_ORIGIN, wait_until="commit")
         page.wait_for_function("window.ready === true")
         page.said = said
         try:
