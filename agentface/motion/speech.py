@@ -35,6 +35,7 @@ _TAIL_S = 2.5
 """So long after its end an utterance may still be seen."""
 _FURTHEST = 16.0
 """No number of a sample is farther from that of another."""
+_SAME = 1e-6
 _NEAR_S = 1e-3
 """Over so long a speed is measured."""
 
@@ -264,13 +265,13 @@ class SpeechChannel:
 
     def _join(self, change: Callable[[Utterance], None]) -> None:
         """Change what is said, and let what was shown until now go over into it."""
-        shown, speed = self._told()
-        shown += self._rest.value
-        speed += self._rest.velocity
+        before, speed = self._told()
         assert self._current is not None, "something is said"  # noqa: S101 - for the type checker
         change(self._current)
         wanted, ahead = self._told()
-        self._rest.glide(shown - wanted, speed - ahead, JOIN_S)
+        if np.abs(before - wanted).max() < _SAME and np.abs(speed - ahead).max() < _SAME / JOIN_S:
+            return  # a transition that goes on comes to its end in time, however often the same is told
+        self._rest.glide(before + self._rest.value - wanted, speed + self._rest.velocity - ahead, JOIN_S)
 
     def _told(self) -> tuple[Doubles, Doubles]:
         """What is wanted now, and its change a second."""

@@ -24,7 +24,7 @@ def run(*arguments: object):
 @pytest.mark.parametrize(
     ("arguments", "said"),
     [
-        (("face.obj",), "expected a FILE that ends in .glb, .vrm, got '.obj'"),
+        (("face.obj",), "expected a FILE that ends in .glb, .vrm, .html, got '.obj'"),
         (("face",), "got 'no ending'"),
         (("face.glb", "--shapes", "exact"), "--shapes exact goes with --performance FILE"),
         (("face.vrm", "--performance", "smile.fap"), "--performance goes with a .glb"),

@@ -98,7 +98,7 @@ class Oracle:
         return [0.0 if name in shares else shown[name] for name in NAMES]
 
 
-OWN = tuple(name for name in CHANNELS if name != "arkit")
+OWN = tuple(name for name in CHANNELS if name not in ("arkit", "tracker"))
 """That of ARKit's weights is there from the first of them on."""
 ANGLE_NAMES = tuple(known.name for known in PARAMETERS if known.unit == "rad")
 DEEDS = st.one_of(

@@ -62,7 +62,7 @@ def test_an_unknown_benchmark_is_told():
         run("paper")
     assert set(BENCHES) == {
         "deform", "papers", "frame", "motion", "latency", "crowd", "fuzzy", "render", "start", "texture", "tissue",
-        "mpeg4", "arkit",
+        "mpeg4", "arkit", "web",
     }  # fmt: skip
 
 
