@@ -36,6 +36,7 @@ _TAIL_S = 2.5
 _FURTHEST = 16.0
 """No number of a sample is farther from that of another."""
 _SAME = 1e-6
+"""Samples that differ by less, and speeds by what that is in ``JOIN_S``, are one."""
 _NEAR_S = 1e-3
 """Over so long a speed is measured."""
 

@@ -95,6 +95,7 @@ def overlaps(
     """
     at, height = np.moveaxis(points[rings[:, None, own], :2], -1, 0)
     across, up = np.moveaxis(points[rings[:, other], :2], -1, 0)
+    across = _in_order(across)
     before = across[None, :, None, 1:-1] >= at[..., None]
     second = np.where(before.any(-1), before.shape[-1] - before[..., ::-1].argmax(-1), 0) + 1
     ring = np.arange(len(rings))[:, None]
@@ -103,6 +104,13 @@ def overlaps(
     there = up[ring, second - 1] + portion * (up[ring, second] - up[ring, second - 1])
     inside = -np.maximum(at - across[:, :1], across[:, -1:] - at)
     return np.float32(sign) * (there - height) - np.maximum(-inside, np.float32(0.0)), second, portion, inside
+
+
+def _in_order(across: _Points) -> _Points:
+    """``(rings, K)`` m from left to right, also where a ring folds back: as far back from one end as from the other."""
+    forth = np.minimum.accumulate(across, axis=1)
+    back = np.maximum.accumulate(across[:, ::-1], axis=1)[:, ::-1]
+    return np.float32(0.5) * (forth + back)
 
 
 def _lips(tables: ContactTables) -> tuple[tuple[Indices, Indices, float], ...]:

@@ -51,6 +51,7 @@ def gaps(tables: ContactTables, own: Indices, other: Indices, sign: np.float32, 
     """``(K,)`` m: between each of ``own`` columns and the other lip, where they are nearest; none is negative."""
     places, heights = _rings(tables, own, points)
     across, up = _rings(tables, other, points)
+    _put_in_order(across)
     found = _new_overlaps(places.shape[1])
     gap = np.full(places.shape[1], np.float32(np.inf), np.float32)
     for ring in range(across.shape[0]):
@@ -120,6 +121,7 @@ def _push_apart(
     touched = False
     places, heights = _rings(tables, own, points)
     across, up = _rings(tables, other, points)
+    _put_in_order(across)
     found = _new_overlaps(places.shape[1])
     for ring in range(across.shape[0]):
         for facing in range(across.shape[0]):
@@ -150,6 +152,21 @@ def _rings(tables: ContactTables, columns: Indices, points: Floats) -> Any:
             vertex = tables.grid[tables.first + ring, columns[min(j, columns.shape[0] - 1)]]
             across[ring, j], up[ring, j] = points[vertex, 0], points[vertex, 1]
     return across, up
+
+
+@kernel(error_model="numpy")
+def _put_in_order(across: Floats) -> None:
+    """From left to right, also where a ring folds back; as the twin's ``_in_order``."""
+    back = np.empty(across.shape[1], np.float32)
+    for ring in range(across.shape[0]):
+        row = across[ring]
+        back[-1] = row[-1]
+        for j in range(row.shape[0] - 2, -1, -1):
+            back[j] = max(row[j], back[j + 1])
+        forth = row[0]
+        for j in range(row.shape[0]):
+            forth = min(forth, row[j])
+            row[j] = _HALF * (forth + back[j])
 
 
 @kernel(error_model="numpy")
