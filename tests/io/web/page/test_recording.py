@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from click.testing import CliRunner
 
-from agentface.cli import main
+from agentface.cli import cli
 from agentface.clock import FrameClock
 from agentface.errors import InvalidValueError
 from agentface.face import Face
@@ -103,7 +103,7 @@ def test_export_writes_a_page(tmp_path, monkeypatch):
         "--json",
         "-",
     ]
-    ran = CliRunner().invoke(main, command)
+    ran = CliRunner().invoke(cli, command)
     assert ran.exit_code == 0, ran.output
     told = json.loads(ran.stdout)
     assert (told["format"], told["bytes"], told["sound"]) == ("html", path.stat().st_size, False)
@@ -113,6 +113,6 @@ def test_export_writes_a_page(tmp_path, monkeypatch):
 
 
 def test_export_of_a_page_wants_a_performance():
-    ran = CliRunner().invoke(main, ["export", "x.html"])
+    ran = CliRunner().invoke(cli, ["export", "x.html"])
     assert ran.exit_code == 2
     assert "--performance FILE" in ran.output
