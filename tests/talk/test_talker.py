@@ -105,7 +105,7 @@ def test_the_first_sentence_does_not_wait_for_the_second():
     voice.speak = slow_second
     face.say("One. Two.")
     face.run(0.1)
-    until(lambda: face.speaker._done)
+    until(lambda: face.synthesizer._done)
     face.run(0.5)
     assert [symbol for _, symbol in face.spoken] == ["o"]
     face.run(2.0)
