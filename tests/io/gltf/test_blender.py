@@ -21,7 +21,8 @@ found = {}
 for path in sys.argv[sys.argv.index("--") + 1:]:
     bpy.ops.wm.read_factory_settings(use_empty=True)
     bpy.ops.import_scene.gltf(filepath=path)
-    skin = bpy.data.objects["skin"]
+    # an animation's armature takes names, too
+    (skin,) = [o for o in bpy.data.objects if o.type == "MESH" and o.data.name.partition(".")[0] == "skin"]
     keys = [key.name for key in skin.data.shape_keys.key_blocks] if skin.data.shape_keys else []
     curves = max((len(action.fcurves) for action in bpy.data.actions), default=0)
     found[path] = {"vertices": len(skin.data.vertices), "keys": keys, "actions": len(bpy.data.actions),
