@@ -204,12 +204,12 @@ def test_nobody_has_to_listen(face):
 
 def test_frames_differ_in_their_numbers_alone():
     bundle = FrameBundle(("A", "Joy"))
-    one = bundle.packet(0.0, [0.0] * 28, [0.0, 0.0])
-    other = bundle.packet(1.0, [1.0] * 28, [1.0, 1.0])
+    one = bundle.packet(0.0, [0.0] * 28, np.zeros(2))
+    other = bundle.packet(1.0, [1.0] * 28, np.ones(2))
     assert len(one) == len(other)
     unlike = [place for place in range(len(one)) if one[place] != other[place]]
     assert len(unlike) == 2 * 31, "1.0 has two bytes that are not 0"
-    assert bundle.packet(0.0, [0.0] * 28, [0.0, 0.0]) == one
+    assert bundle.packet(0.0, [0.0] * 28, np.zeros(2)) == one
 
 
 class ThereAndBack:
