@@ -39,11 +39,13 @@ from agentface.requests import (
     SetMuscle,
     SetParameter,
     SetState,
+    SetTracked,
     ShowViseme,
     Speak,
     TakeBack,
 )
 from agentface.speech.phones import Phone
+from agentface.vrm.tracked import Tracked
 from tests.heads import head_model
 
 _NUMBERS = itertools.count()
@@ -83,6 +85,7 @@ ANY_REQUEST = st.one_of(
     st.builds(Gesture, st.sampled_from(("nod", "Brow Flash", "glance")), FRACTIONS),
     st.builds(SetLiveliness, FRACTIONS, st.none() | FADES),
     st.builds(SetState, st.sampled_from((None, "listening", "thinking"))),
+    st.builds(SetTracked, st.builds(Tracked, expressions=FRACTIONS.map(lambda weight: (("happy", weight),)))),
     st.builds(PlayBlock, st.sampled_from("ab").map(block_that_waits)),
     st.builds(Play, st.none() | st.sampled_from([PERFORMED]), FADES),
 )
@@ -110,7 +113,7 @@ def test_every_kind_is_tried_here():
         "SetEmotion", "SetEmotions", "Neutral", "SetMuscle", "SetParameter", "SetActionUnit", "SetGaze", "LookAt",
         "SetHead", "Blink", "Play", "SetFap", "SetFaps", "SetArkit", "SetMood", "Speak", "Hush", "ShowViseme",
         "Gesture", "SetLiveliness", "SetState",
-        "Say", "PlayBlock", "TakeBack",
+        "Say", "PlayBlock", "TakeBack", "SetTracked",
     }  # fmt: skip
 
 

@@ -121,12 +121,12 @@ def test_a_tracker_s_smile_leaves_for_an_avatar():
         command = [sys.executable, "-m", "agentface", "serve", "--osc", "127.0.0.1:0", "--liveliness", "0", *linked]
         environment = os.environ | {"PYTHONUNBUFFERED": "1"}
         with subprocess.Popen(command, stdout=subprocess.PIPE, text=True, env=environment) as server:
-            watchdog = threading.Timer(120, server.kill)
+            watchdog = threading.Timer(280, server.kill)
             watchdog.start()
             try:
                 server.stdout.readline()
                 port = int(re.search(r"driven by VMC on 127.0.0.1:(\d+)", server.stdout.readline())[1])
-                smile = FrameBundle(["Joy"]).packet(0.0, [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0] * 4, [1.0])
+                smile = FrameBundle(["Joy"]).packet(0.0, [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0] * 4, np.ones(1))
                 shown = 0.0
                 while shown < 0.5:
                     avatar.sendto(smile, ("127.0.0.1", port))
@@ -268,7 +268,7 @@ def test_it_films_every_frame_when_drawing_waits(tmp_path, counted):
         (["--view", "window", "--size", "96x64"], "--record"),
         (["--camera", "profile"], "--view window or --record"),
         (["--quality", "portrait"], "--view window or --record"),
-        (["--look", "ginger"], "--view window or --record"),
+        (["--look", "ginger"], "--view window, --record or --web"),
         (["--every-frame"], "--record"),
         (["--view", "window", "--fps", "30"], "--view none"),
         (["--view", "window", "--record", "a.mp4"], "--view none"),
