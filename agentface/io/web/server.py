@@ -2,11 +2,8 @@
 
 from __future__ import annotations
 
-import asyncio
-import errno
 import json
 import socket
-import threading
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from types import TracebackType
@@ -22,6 +19,7 @@ from agentface.io.web.audio import pieces, silence
 from agentface.io.web.guard import guarded
 from agentface.io.web.hub import Client, Hub
 from agentface.io.web.inbox import Inbox
+from agentface.io.web.serving import Serving, listen
 from agentface.io.web.stage import FaceStage, HeadEncoder, Measure, basis_of, encode_head_file
 from agentface.live.loop import Frame
 from agentface.speech.sound import Sound
@@ -73,25 +71,24 @@ class WebServer:
         encode: HeadEncoder = encode_head_file,
         measure: Measure = basis_of,
     ) -> None:
-        uvicorn = _uvicorn()
+        _check_extra()
         self.access = Access.of(host, origins, token)
         self._clock = clock or SystemClock()
         named = _by_id(faces)
-        self._socket = _listen(host, port)
-        self.host, self.port = self._socket.getsockname()[:2]
+        listener = listen(host, port, "web server", "--web")
+        self.host, self.port = listener.getsockname()[:2]
         options: dict[str, Any] = {"deformer": deformer, "look": look, "encode": encode, "fps": fps, "told": told}
         try:
             self._stages = {name: FaceStage(face, name, measure=measure, **options) for name, face in named.items()}
         except BaseException:
-            self._socket.close()
+            listener.close()
             raise
         self._hub, self._inbox = Hub(), Inbox()
         self._voices = {name: _Voice(stage.face, partial(self._tell, name)) for name, stage in self._stages.items()}
         self._frame = 0
-        self._loop: asyncio.AbstractEventLoop | None = None
-        self._server = uvicorn.Server(self._config(uvicorn))
-        self._thread = threading.Thread(target=self._serve, name="agentface-web", daemon=True)
-        self._thread.start()
+        self._closed = False
+        self._serving: Serving | None = None  # who joins at once finds it
+        self._serving = self._served(listener)
 
     @property
     def pages(self) -> int:
@@ -122,14 +119,14 @@ class WebServer:
 
     def close(self) -> None:
         """Stop serving; may be called twice."""
-        if self._server.should_exit:
+        if self._closed:
             return
+        self._closed = True
         self._inbox.close()
         for voice in self._voices.values():
             voice.close()
-        self._server.should_exit = True
-        self._thread.join()
-        self._socket.close()
+        if self._serving is not None:
+            self._serving.close()
 
     def __enter__(self) -> Self:
         return self
@@ -139,43 +136,27 @@ class WebServer:
     ) -> None:
         self.close()
 
-    def _config(self, uvicorn: Any) -> Any:
+    def _served(self, listener: socket.socket) -> Serving:
         from agentface.io.web.app import LARGEST_MESSAGE, WebFaces, open_paths
 
         faces = WebFaces(self._stages, self._hub, self._inbox, self._clock)
         faces.joined = self._catch_up
         app = guarded(faces.app(), self.access, open_paths=open_paths(), clock=self._clock)
-        return uvicorn.Config(
+        return Serving(
             app,
-            log_config=None,
-            access_log=False,
+            listener,
             lifespan="off",
-            interface="asgi3",
-            http="h11",
             ws="websockets-sansio",
             ws_max_size=LARGEST_MESSAGE,
             ws_max_queue=16,
             ws_per_message_deflate=False,
             ws_ping_interval=20.0,
             ws_ping_timeout=20.0,
-            limit_concurrency=256,
-            timeout_keep_alive=10,
-            timeout_graceful_shutdown=1,
-            h11_max_incomplete_event_size=16 * 1024,
-            proxy_headers=False,
-            server_header=False,
         )
-
-    def _serve(self) -> None:
-        async def serve() -> None:
-            self._loop = asyncio.get_running_loop()
-            await self._server.serve(sockets=[self._socket])
-
-        asyncio.run(serve())
 
     def _call(self, function: Callable[..., object], *arguments: object) -> None:
         """Have something done in the event loop, if there still is one."""
-        loop = self._loop
+        loop = self._serving.loop if self._serving is not None else None
         if loop is None:
             return
         try:
@@ -237,14 +218,13 @@ class _Voice:
         self._tell(json.dumps({"type": "spoken", "text": text}))
 
 
-def _uvicorn() -> Any:
+def _check_extra() -> None:
     try:
         import starlette  # noqa: F401
-        import uvicorn
+        import uvicorn  # noqa: F401
         import websockets  # noqa: F401
     except ImportError as error:
         raise ServerError(_NO_EXTRA.format(name=error.name)) from error
-    return uvicorn
 
 
 def _by_id(faces: Face | Mapping[str, Face]) -> dict[str, Face]:
@@ -253,26 +233,3 @@ def _by_id(faces: Face | Mapping[str, Face]) -> dict[str, Face]:
     if not 1 <= len(faces) <= MOST_FACES:
         raise InvalidValueError("faces", f"1 to {MOST_FACES}", len(faces))
     return {check_id(name): face for name, face in faces.items()}
-
-
-def _listen(host: str, port: int) -> socket.socket:
-    try:
-        family, kind, protocol, _, place = socket.getaddrinfo(host, port, type=socket.SOCK_STREAM)[0]
-        listener = socket.socket(family, kind, protocol)
-    except OSError as error:
-        raise ServerError(f"web server: expected an address of this machine, got {host!r}: {error.strerror}") from error
-    try:
-        listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
-        listener.bind(place)
-        listener.listen(128)
-    except OSError as error:
-        listener.close()
-        what = f"port {port} of {host} to be free"
-        if error.errno in (errno.EACCES, errno.EPERM):
-            what = f"the right to listen on port {port} of {host}"
-        elif error.errno == errno.EADDRNOTAVAIL:
-            what = f"an address of this machine, not {host}"
-        advice = "choose another with --web HOST:PORT"
-        raise ServerError(f"web server: expected {what}, got {error.strerror}; {advice}") from error
-    listener.setblocking(False)
-    return listener

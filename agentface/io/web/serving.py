@@ -21,6 +21,9 @@ class Serving:
         listener: of :func:`listen`; closed in the end.
         options: what uvicorn is told beside what keeps a server small and quiet.
 
+    Attributes:
+        loop: the event loop in which it answers; None until it does.
+
     Raises ImportError without uvicorn.
     """
 
@@ -29,6 +32,7 @@ class Serving:
 
         self.host, self.port = listener.getsockname()[:2]
         self._socket = listener
+        self.loop: asyncio.AbstractEventLoop | None = None
         config = uvicorn.Config(
             app,
             log_config=None,
@@ -67,7 +71,11 @@ class Serving:
         self.close()
 
     def _serve(self) -> None:
-        asyncio.run(self._server.serve(sockets=[self._socket]))
+        async def serve() -> None:
+            self.loop = asyncio.get_running_loop()
+            await self._server.serve(sockets=[self._socket])
+
+        asyncio.run(serve())
 
 
 def listen(host: str, port: int, what: str, option: str) -> socket.socket:
