@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import asyncio
 import json
-import threading
 from contextlib import closing, contextmanager
 from http.client import HTTPConnection
 
@@ -15,10 +14,10 @@ pytest.importorskip("mcp")
 from mcp.client.client import Client
 from mcp.client.streamable_http import streamable_http_client
 
-from agentface.agents.mcp.actor import Actor
 from agentface.agents.mcp.http import PATH, serve_http
 from agentface.agents.mcp.server import face_server
 from agentface.errors import InvalidValueError, ServerError
+from tests.agents.mcp.stepping import stepped
 from tests.voices import talking_face
 
 TOKEN = "-".join(["a", "token", "of", "a", "test"])
@@ -32,21 +31,8 @@ HELLO = {
 
 @pytest.fixture(scope="module")
 def actor():
-    with talking_face() as face:
-        made, over = Actor(face.model), threading.Event()
-        made.made.set_result(face)
-
-        def steps():
-            while not over.wait(0.002):
-                made.take_in()
-                face.step(0.02)
-
-        thread = threading.Thread(target=steps)
-        thread.start()
+    with talking_face() as face, stepped(face) as made:
         yield made
-        over.set()
-        thread.join()
-        made.close()
 
 
 @contextmanager

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import asyncio
 import sys
-import threading
 
 import pytest
 
@@ -16,6 +15,7 @@ from agentface.agents.mcp.actor import Actor
 from agentface.agents.mcp.report import FaceReport
 from agentface.agents.mcp.server import face_server
 from agentface.errors import MissingPackageError
+from tests.agents.mcp.stepping import stepped
 from tests.voices import FakeVoice, talking_face
 
 NAMES = {
@@ -31,22 +31,8 @@ def voice():
 
 @pytest.fixture(scope="module")
 def actor(voice):
-    """A face that another thread steps, 20 ms at a time, as fast as it can."""
-    with talking_face(voice) as face:
-        made, over = Actor(face.model), threading.Event()
-        made.made.set_result(face)
-
-        def steps():
-            while not over.wait(0.001):
-                made.take_in()
-                face.step(0.02)
-
-        thread = threading.Thread(target=steps)
-        thread.start()
+    with talking_face(voice) as face, stepped(face) as made:
         yield made
-        over.set()
-        thread.join()
-        made.close()
 
 
 def called(actor, *calls):
