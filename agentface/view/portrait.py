@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from agentface.conventions import SIDES
+from agentface.deform.finish import chest
 from agentface.head.look import Look
 from agentface.head.model import HeadModel
 from agentface.head.skin_image import skin_image
@@ -81,7 +82,7 @@ def portrait(model: HeadModel, look: Look) -> dict[str, Any]:
         "eyes": [_eye(model, side) for side in SIDES],
         "parts": {name: _mesh(mouth_mesh(model, name)) for name in PARTS},
         "linings": [_mesh(lining.drawn(model.vertices)) for lining in eye_linings(model)],
-        "shirt": _mesh(shirt_mesh(model)),
+        "shirt": _mesh(shirt_mesh(model)) | {"breathing": chest.prepare(model).filled},
         "brows": _mesh(chance.brows.drawn()) | {"gloss": SOFTNESSES[0]},
         "lashes": _mesh(chance.lashes.drawn()) | {"gloss": SOFTNESSES[1]},
         "hair": None if grown is None else _hair(model, grown),

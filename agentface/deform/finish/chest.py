@@ -36,6 +36,12 @@ def prepare(model: HeadModel) -> ChestTables:
     return ChestTables(breath, filled)
 
 
+def breath_of(shoulders: Floats) -> Floats:
+    """``(...)`` how deep a breath ``FaceGeometry.shoulders (..., 4, 4)`` show, 0..1."""
+    breath: Floats = shoulders[..., 1, 3] / np.float32(_RISE)
+    return breath
+
+
 def apply(tables: ChestTables, values: Floats, transform: Floats) -> None:
     """Write into ``transform (4, 4)`` what moves shoulders and clothes from where they are without breath."""
     transform[:] = np.eye(4)

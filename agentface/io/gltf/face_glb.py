@@ -119,6 +119,8 @@ class FaceGlb:
             own = [name for name in shaped.order if part.name in shaped.targets[name] or part.name == SOFT[0]]
             targets = {name: shaped.targets[name].get(part.name, still) for name in own}
             node = figure.add(part, materials[part.material], targets)
+            if part.rides == "body" and recorder is not None:
+                tracks += _lifted(node, recorder.shoulders)
             if shaped.weights is not None and own:
                 columns = [shaped.order.index(name) for name in own]
                 tracks.append(NodeTrack(node, "weights", shaped.weights[:, columns].ravel()))
@@ -157,6 +159,14 @@ def part_figures(model: HeadModel, parts: Sequence[FacePart]) -> dict[str, dict[
     """The counts of vertices and triangles by part."""
     rest = FaceGeometry.at_rest(model)
     return {part.name: {"vertices": len(part.at(rest)[0]), "triangles": len(part.triangles)} for part in parts}
+
+
+def _lifted(node: int, shoulders: Floats) -> list[NodeTrack]:
+    """How breath moves the node of what is below the neck, at the model's origin; nothing where it rests."""
+    if (shoulders == np.eye(4)).all():
+        return []
+    scales = np.ascontiguousarray(np.diagonal(shoulders[:, :3, :3], axis1=1, axis2=2))
+    return [NodeTrack(node, "scale", scales), NodeTrack(node, "translation", shoulders[:, :3, 3].copy())]
 
 
 def _forward(centre: Doubles, thrust: Floats) -> Floats:

@@ -22,7 +22,7 @@ class RowTaker(Protocol):
 
 
 class SurfaceRecorder:
-    """Gives each frame's movement to ``taker``, and keeps the turns of the head and the eyes.
+    """Gives each frame's movement to ``taker``, and keeps how head, eyes and shoulders stand.
 
     Attributes:
         told: gets the time of each frame in seconds.
@@ -30,20 +30,22 @@ class SurfaceRecorder:
         heads: ``(T, 3, 3)`` the head's turns.
         eyes: ``(T, 2, 3, 3)`` the eyes'.
         thrusts: ``(T, 2)`` m, how far the eyes come forward.
+        shoulders: ``(T, 4, 4)``, what moves them.
     """
 
     def __init__(self, model: HeadModel, surface: Surface, taker: RowTaker) -> None:
         self._model, self._surface, self._taker = model, surface, taker
         self.told: Callable[[float], object] = lambda _: None
         self._times: list[float] = []
-        self._turns: list[tuple[Floats, Floats, Floats]] = []
+        self._stands: list[tuple[Floats, ...]] = []
 
     def show(self, frame: Frame) -> None:
         """Take one frame."""
         geometry = frame.geometry
         self._taker.add(self._surface.row(released(self._model, geometry)))
         self._times.append(frame.time_s)
-        self._turns.append((geometry.head[:3, :3].copy(), geometry.eye_rotations.copy(), geometry.eye_thrust.copy()))
+        stands = geometry.head[:3, :3], geometry.eye_rotations, geometry.eye_thrust, geometry.shoulders
+        self._stands.append(tuple(array.copy() for array in stands))
         self.told(frame.time_s)
 
     def __len__(self) -> int:
@@ -57,14 +59,19 @@ class SurfaceRecorder:
     @property
     def heads(self) -> Floats:
         """``(T, 3, 3)``."""
-        return np.stack([head for head, _, _ in self._turns])
+        return np.stack([head for head, *_ in self._stands])
 
     @property
     def eyes(self) -> Floats:
         """``(T, 2, 3, 3)``."""
-        return np.stack([eyes for _, eyes, _ in self._turns])
+        return np.stack([eyes for _, eyes, *_ in self._stands])
 
     @property
     def thrusts(self) -> Floats:
         """``(T, 2)`` m."""
-        return np.stack([thrust for _, _, thrust in self._turns])
+        return np.stack([thrust for *_, thrust, _ in self._stands])
+
+    @property
+    def shoulders(self) -> Floats:
+        """``(T, 4, 4)``."""
+        return np.stack([shoulders for *_, shoulders in self._stands])

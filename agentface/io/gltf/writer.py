@@ -137,7 +137,7 @@ class NodeTrack(NamedTuple):
     """What one node does: ``values`` a row a time; of weights, ``(T * W,)``."""
 
     node: int
-    path: Literal["translation", "rotation", "weights"]
+    path: Literal["translation", "rotation", "scale", "weights"]
     values: Floats
 
 

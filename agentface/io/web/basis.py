@@ -16,7 +16,7 @@ from agentface.io.web.modes import ModeSet, principal_modes, stored
 from agentface.io.web.poses import natural_poses, random_mixtures
 from agentface.io.web.unfinished import Unfinished
 
-SKIN_MODES, TONGUE_MODES = 116, 80
+SKIN_MODES, TONGUE_MODES = 116, 79
 SAMPLES, FEW_SAMPLES = (1600, 800), (500, 300)
 """Random mixtures and natural poses that a basis is made of: of a deformer that does many at once, and of another."""
 _TONGUE = 0.35

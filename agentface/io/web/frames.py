@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from agentface.conventions import Doubles
+from agentface.deform.finish import chest
 from agentface.deform.geometry import FaceGeometry
 from agentface.errors import InvalidValueError
 from agentface.head.model import HeadModel
@@ -34,13 +35,13 @@ def basis_layout(basis: Basis, trains: int) -> Layout:
     large = [Field(name, "i16", min(most, counts[name]), _UNIT) for name, most in _LARGE.items()]
     rests = {name: counts[name] - most for name, most in _LARGE.items()}
     small = [Field(name, "i8", rest, 1.0 / 127) for name, rest in rests.items() if rest > 0]
-    return Layout([*_BEGINNING, *large, *_RIGID, *small, *_levels(trains)])
+    return Layout([*_BEGINNING, *large, *_RIGID, *small, _BREATH, *_levels(trains)])
 
 
 def exact_layout(skin: int, tongue: int, trains: int) -> Layout:
     """What a frame of vertices holds: so many of the skin, before its last stages, and of the tongue; of trains."""
     vertices = [Field("vertices", "i16", 3 * skin, _EXACT), Field("tongue_vertices", "i16", 3 * tongue, _EXACT)]
-    rigid = [Field(field.name, "f32", field.count) for field in _RIGID]
+    rigid = [Field(field.name, "f32", field.count) for field in (*_RIGID, _BREATH)]
     return Layout([*_BEGINNING, *vertices, *rigid, *_levels(trains, "u16")])
 
 
@@ -52,6 +53,8 @@ _RIGID = (
     Field("jaw", "i16", 7, _SMALL_TURN_AND_MOVE),
     Field("head", "i16", 7, _TURN_AND_MOVE),
 )
+
+_BREATH = Field("breath", "u8", 1, 1.0 / 255)
 
 
 def _levels(trains: int, kind: str = "u8") -> list[Field]:
@@ -101,6 +104,7 @@ def rigid_values(geometry: FaceGeometry) -> dict[str, npt.ArrayLike]:
         "eye_thrust": geometry.eye_thrust,
         "jaw": np.append(turns[2], jaw[:3, 3]),
         "head": np.append(turns[3], head[:3, 3]),
+        "breath": chest.breath_of(geometry.shoulders),
         "wrinkle_levels": geometry.wrinkle_levels,
     }
 

@@ -106,15 +106,16 @@ class FaceStage:
 
 def basis_of(face: Face, deformer: str, told: Callable[[str], object] = lambda _: None) -> Basis:
     """The basis of a face, made once on a machine; ``told`` is told when that takes a while."""
+    samples = SAMPLES if hasattr(face.deformer, "worker") else FEW_SAMPLES
 
     def make(model: HeadModel) -> Basis:
         told(f"measuring how {model.name} moves, for pages: once on this machine")
         start = time.perf_counter()
-        made = make_basis(model, deformer, SAMPLES if hasattr(face.deformer, "worker") else FEW_SAMPLES)
+        made = make_basis(model, deformer, samples)
         told(f"measured in {time.perf_counter() - start:.0f} s")
         return made
 
-    basis: Basis = face.model.derived(f"web.basis.{stamp_of((), deformer)}", make)
+    basis: Basis = face.model.derived(f"web.basis.{stamp_of((), deformer, repr(samples))}", make)
     return basis
 
 

@@ -49,11 +49,12 @@ def face_glb(model: HeadModel, deformer: Deformer) -> FaceGlb:
 
 @pytest.fixture(scope="session")
 def poses() -> tuple[FacePose, ...]:
-    """Natural poses one after the other, with head, eyes and tongue in motion; the first is at rest."""
+    """Natural poses one after the other, with head, eyes, tongue and shoulders in motion; the first is at rest."""
     rows = 0.7 * natural_poses(9, np.random.default_rng(11)).astype(np.float32)
     rows[0] = 0.0
     for name, size in (("head_yaw", 0.6), ("head_pitch", -0.2), ("gaze_yaw", 0.3), ("tongue_raise", 0.5)):
         rows[:, indices_of(name)[0]] = size * np.sin(np.arange(len(rows)))
+    rows[:, indices_of("breath")[0]] = np.linspace(0.0, 1.0, len(rows))
     return tuple(FacePose(row) for row in rows)
 
 

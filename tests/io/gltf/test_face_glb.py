@@ -12,6 +12,7 @@ from agentface.deform.geometry import FaceGeometry
 from agentface.head.arkit import ARKIT_SHAPES
 from agentface.io.gltf.face_parts import face_parts, released
 from agentface.parameters import FacePose
+from agentface.view.parts.shirt import shirt
 from tests.browser import address, viewer
 from tests.gltf_validator import issues
 
@@ -94,6 +95,8 @@ def test_three_plays_a_performance_as_the_engine_does(page, played_file, model, 
             rows = model.parts[f"eye_{side}"].attributes["POSITION"] - centre
             eye = rows @ shown.eye_rotations[number].T + centre + [0.0, 0.0, shown.eye_thrust[number]]
             assert off_mm(places(page, f"eye_{side}"), in_the_room(shown, eye)) < NEAR_MM
+        breathing = shirt(model)[0] @ shown.shoulders[:3, :3].T + shown.shoulders[:3, 3]
+        assert off_mm(places(page, "shirt"), breathing) < NEAR_MM
     assert page.said == []
 
 

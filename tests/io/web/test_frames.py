@@ -13,11 +13,11 @@ from agentface import Face, FacePose
 from agentface.deform.crowd import Crowd
 from agentface.errors import InvalidValueError
 from agentface.head.model import load_model
+from agentface.io.web import stage
 from agentface.io.web.basis import SKIN_MODES, TONGUE_MODES, Basis
 from agentface.io.web.frames import FRAME, FrameReader, FrameWriter, basis_layout, matrix_of, quaternions
 from agentface.io.web.modes import ModeSet
 from agentface.io.web.poses import natural_poses, random_mixtures
-from agentface.io.web.stage import basis_of
 from agentface.io.web.unfinished import Unfinished, turn_of
 from agentface.parameters import HIGH, LOW, parameter
 
@@ -94,6 +94,7 @@ def test_a_frame_says_what_moves_as_a_whole(model, basis, writer, crowd, poses):
             np.testing.assert_allclose(matrix_of(values["head"]), geometry.head, atol=turned)
             np.testing.assert_allclose(values["pupils"], geometry.pupils, atol=1e-4)
             np.testing.assert_allclose(values["eye_thrust"], geometry.eye_thrust, atol=1e-7)
+            np.testing.assert_allclose(values["breath"], pose[parameter("breath").index], atol=0.5 / 255 + 1e-6)
             np.testing.assert_allclose(values["wrinkle_levels"], geometry.wrinkle_levels, atol=0.5 / 255 + 1e-6)
 
 
@@ -110,11 +111,19 @@ def test_a_basis_of_few_samples_is_near_already(model, basis, writer, crowd):
     assert np.sqrt((np.array(errors) ** 2).mean()) < 0.3
 
 
+def test_a_basis_of_fewer_samples_is_not_taken_for_a_full_one(monkeypatch):
+    monkeypatch.setattr(stage, "make_basis", lambda model, deformer, samples: (deformer, samples))
+    face = Face("onyx")
+    for samples in ((1, 2), (3, 4)):
+        monkeypatch.setattr(stage, "SAMPLES", samples)
+        assert stage.basis_of(face, "geometric") == ("geometric", samples)
+
+
 @pytest.mark.soak
 @pytest.mark.parametrize(("name", "deformer", "count"), [("amber", "geometric", 300), ("onyx", "geometric", 150)])
 def test_a_basis_is_true(name, deformer, count):
     face = Face(name, deformer=deformer)
-    basis = basis_of(face, deformer)
+    basis = stage.basis_of(face, deformer)
     writer = FrameWriter(face.model, basis)
     reader = FrameReader(face.model, basis, writer.layouts["basis"])
     rng = np.random.default_rng(77)

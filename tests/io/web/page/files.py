@@ -75,8 +75,9 @@ def no_basis(model: HeadModel) -> Basis:
 
 @cache
 def settled(name: str, emotion: str | None = None) -> tuple[Face, FaceGeometry]:
-    """A face that has shown an emotion for a while, and how it then is."""
+    """A face that has shown an emotion for a while and drawn breath, and how it then is."""
     face = Face(name)
+    face.set_parameter("breath", 0.8)
     if emotion is not None:
         face.set_emotion(emotion, 1.0)
     geometry = face.step(_SETTLED_S)

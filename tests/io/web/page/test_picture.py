@@ -32,12 +32,13 @@ async ({ url, frame, size, camera, transparent }) => {
     stages[name].resize(...size, 1);
     stages[name].show(await Face3D.load(url));
   }
-  const stage = stages[name], { skin } = stage.face;
+  const stage = stages[name], { skin, shirt } = stage.face;
   stage.look(camera);
   stage.face.show(frame);
   stage.draw();
   const picture = stage.renderer.domElement.toDataURL();
-  return { picture, vertices: Array.from(skin.vertices), normals: Array.from(skin.normals) };
+  const shoulders = Array.from(shirt.material.uniforms.moved.value);
+  return { picture, shoulders, vertices: Array.from(skin.vertices), normals: Array.from(skin.normals) };
 }
 """
 
@@ -110,10 +111,12 @@ def test_the_same_head_gives_the_same_bytes(files):
     assert encode_head(model, load_look(model), no_basis(model)) == (files.folder / name).read_bytes()
 
 
-def test_page_puts_the_skin_where_the_engine_does(stages, files):
+def test_page_puts_skin_and_shoulders_where_the_engine_does(stages, files):
     geometry = settled("onyx", "surprise")[1]
     made = drawn(stages, files, "onyx", "surprise")
     assert np.abs(np.reshape(made["vertices"], (-1, 3)) - geometry.vertices).max() < 1e-6
+    assert geometry.shoulders[1, 3] > 0.005
+    np.testing.assert_allclose(np.reshape(made["shoulders"], (4, 4)).T, geometry.shoulders, atol=1e-6)
     facing = (np.reshape(made["normals"], (-1, 3)) * geometry.smooth_normals).sum(axis=1)
     assert np.abs(facing - 1.0).max() < 1e-4
 

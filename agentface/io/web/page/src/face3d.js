@@ -6,7 +6,7 @@ import { readHead } from './glb.js';
 import { FineLips } from './lips.js';
 import { Materials, drawn, geometryOf, partOf, skinGeometry } from './meshes.js';
 import { lidUniforms, mouthUniforms } from './openings.js';
-import { frameAtRest, matrixOf, product } from './rigid.js';
+import { breathing, frameAtRest, matrixOf, product } from './rigid.js';
 import { Skin, moveBy, writeNormals } from './skin.js';
 import { COLUMNS, atlasTexture, pictureTexture, shadowTarget, skinTexture, volumeOf } from './textures.js';
 
@@ -125,7 +125,7 @@ export class Face3D extends Object3D {
       const shaded = name === 'teeth_upper' ? 0 : head.mouth.shaded;
       return [name, part(record, 'part', { moved: IDENTITY, shaded })];
     }));
-    part(head.shirt, 'cloth', { moved: IDENTITY });
+    this.shirt = part(head.shirt, 'cloth', { moved: IDENTITY });
     for (const lining of head.linings) part(lining, 'lining', { shaded: 0 });
     this.eyes = head.eyes.map((eye) => part(eye, 'eye', {
       turned: IDENTITY, centre: [0, 0, 0], radius: eye.radius, upper_lid: [0, 0, 0], lower_lid: [0, 0, 0], corners: [0, 0], dilation: 1,
@@ -148,6 +148,7 @@ export class Face3D extends Object3D {
     this.parts.teeth_upper.material.uniforms.moved.value = head;
     this.parts.teeth_lower.material.uniforms.moved.value = jaw;
     this.parts.tongue.material.uniforms.moved.value = jaw;
+    this.shirt.material.uniforms.moved.value = breathing(this.head.shirt.breathing, frame.breath);
     this.eyes.forEach((mesh, side) => this.turnEye(mesh, side, frame, head));
     this.shown = frame;
     this.stale = true;

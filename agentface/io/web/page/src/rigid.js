@@ -33,6 +33,12 @@ export function product(a, b) {
   return out;
 }
 
+/** Sixteen numbers: what moves shoulders in a `breath` of 0 to 1; `filled` has three rows, what a whole one adds. */
+export function breathing(filled, breath) {
+  const at = (row, column) => (row === column ? 1 : 0) + (row < 3 ? breath * filled[4 * row + column] : 0);
+  return Array.from({ length: 16 }, (_, i) => at(i % 4, i >> 2));
+}
+
 /** The frame of a face at rest. */
 export function frameAtRest({ basis, atlas }) {
   return {
@@ -43,6 +49,7 @@ export function frameAtRest({ basis, atlas }) {
     eye_thrust: [0, 0],
     jaw: [0, 0, 0, 1, 0, 0, 0],
     head: [0, 0, 0, 1, 0, 0, 0],
+    breath: 0,
     wrinkle_levels: new Float64Array(atlas.patches.length),
   };
 }
