@@ -69,7 +69,10 @@ class VideoWriter:
         self._container, self._stream, self._track = _open(path, self._file, size, fps, sound)
 
     def add(self, image: Bytes, time_s: float) -> None:
-        """Show ``image`` ``(H, W, 3)`` uint8 from ``time_s`` on, which is later than the time of the last frame."""
+        """Show ``image`` ``(H, W, 3)`` uint8 from ``time_s`` on, which is later than the time of the last frame.
+
+        The first one is shown from 0 on: a file would begin with it, whatever its time, and the sound would be late.
+        """
         from av.video.frame import VideoFrame
 
         if image.shape != (self.size[1], self.size[0], 3):
@@ -77,10 +80,11 @@ class VideoWriter:
         tick = round(check_finite("time_s", time_s) * _TICKS)
         if tick <= self._last:
             raise InvalidValueError("time_s", f"more than {self._last / _TICKS:g} s", time_s)
-        frame = VideoFrame.from_ndarray(image, format="rgb24")
-        frame.pts, frame.time_base = tick, Fraction(1, _TICKS)
+        for at in (0, tick) if self._last < 0 < tick else (tick,):
+            frame = VideoFrame.from_ndarray(image, format="rgb24")
+            frame.pts, frame.time_base = at, Fraction(1, _TICKS)
+            self._mux(frame)
         self._last = tick
-        self._mux(frame)
         if self._track is not None:
             self._mux_sound(
                 self._track.until(self._last / _TICKS)

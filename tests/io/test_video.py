@@ -50,6 +50,16 @@ def test_frames_stand_at_their_times(tmp_path):
     assert np.diff([level for _, level in seen]).min() > 30
 
 
+@pytest.mark.parametrize("times", [(0.5,), (0.4, 0.5, 0.9)])
+def test_one_that_begins_late_shows_its_first_frame_until_then(tmp_path, times):
+    with VideoWriter(tmp_path / "a.mp4", SIZE, 30) as video:
+        for number, time in enumerate(times):
+            video.add(picture(50 * (number + 1)), time)
+    seen = read(tmp_path / "a.mp4")
+    assert [time for time, _ in seen] == pytest.approx([0.0, *times], abs=1e-4)
+    assert seen[0][1] == pytest.approx(seen[1][1], abs=1.0)
+
+
 def test_an_error_removes_the_file(tmp_path):
     path = tmp_path / "a.mp4"
     with pytest.raises(RuntimeError):

@@ -76,6 +76,47 @@ def test_what_is_drawn_is_confirmed(tab, served, record_property):
     record_property("latency_ms", round(1000 * client.latency_s, 1))
 
 
+TIMES = f"""
+async () => {{
+  const median = (rows) => rows.sort((a, b) => a - b)[rows.length >> 1], {{ stage }} = {ELEMENT};
+  const next = () => new Promise(requestAnimationFrame), frames = [], trips = [];
+  await next();
+  for (let i = 0, last = performance.now(); i < 60; i++) {{
+    stage.draw();
+    await next();
+    frames.push(-last + (last = performance.now()));
+  }}
+  for (let i = 0; i < 60; i++) {{
+    const start = performance.now();
+    await (await fetch('/openapi.json', {{ cache: 'no-store' }})).text();
+    trips.push(performance.now() - start);
+  }}
+  return [median(frames), median(trips)];
+}}
+"""
+
+
+@pytest.mark.soak
+def test_a_frame_is_confirmed_within_a_frame_of_the_page_and_a_round_trip(tab, record_property):
+    late_ms = []
+    with serving(fps=10.0) as there:
+        tab.goto(f"{there.server.url}?quality=fast")
+        tab.wait_for_function(DRAWN)
+        (client,) = there.server._hub.clients
+        confirm = client.confirm
+
+        def confirmed(frame: int) -> None:
+            confirm(frame)
+            late_ms.append(1000.0 * client.latency_s)
+
+        client.confirm = confirmed
+        until(lambda: len(late_ms) >= 60)
+        late = sorted(late_ms)[len(late_ms) // 2]
+        frame, trip = tab.evaluate(TIMES)
+    record_property("ms", {"late": late, "frame": frame, "trip": trip})
+    assert late <= frame + trip
+
+
 def test_a_transparent_page_has_nothing_behind_the_face(tab, served):
     tab.goto(f"{served.server.url}?transparent&onclick=fetch('/')&server=http://127.0.0.1:1")
     tab.wait_for_function(DRAWN)
