@@ -163,16 +163,24 @@ class Face(ExpressionCalls, MovementCalls, SpeechCalls, AwaitableTwins):
         self._events.settle()
         return geometry
 
-    def warm_up(self) -> None:
+    def warm_up(self, *, solvers: bool = False) -> None:
         """Compile or load now what the first message and the first frame need, so that they are shown at once.
 
-        Takes seconds the first time on a machine, half a second later on. Changes nothing that is shown.
+        With ``solvers`` that is so of the first FAP and the first of ARKit's weights, too. Takes seconds the first
+        time on a machine, half a second later on. Changes nothing that is shown.
         """
         shown = Mixer(self._inference)
         shown.emotion.change({EMOTIONS[0]: 1.0}, None, None)
         shown.advance(0.1)
         self.channels.speech.warm_up()
         self._deformer.at(FacePose.of(**dict.fromkeys(MUSCLES, 1.0)))
+        if solvers:
+            from agentface.arkit.shape_solver import ShapeSolver
+            from agentface.mpeg4.fap_solver import FapSolver
+            from agentface.mpeg4.faps import FAP_COUNT
+
+            FapSolver(self.model).solve(np.zeros(FAP_COUNT))
+            ShapeSolver(self.model).solve_named({"jawOpen": 1.0})
 
     @property
     def talker(self) -> Talker:

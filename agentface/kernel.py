@@ -41,9 +41,9 @@ def can_compile() -> bool:
     return os.environ.get("NUMBA_DISABLE_JIT", "0") in ("", "0")
 
 
-def any_kept() -> bool:
-    """Whether kernels of these sources have been kept on this machine: without any, a first face waits for them."""
-    folder = _folder("deform")
+def any_kept(room: str = "deform") -> bool:
+    """Whether kernels of a room's sources have been kept on this machine: without any, who first needs them waits."""
+    folder = _folder(room)
     return folder is not None and any(folder.rglob("*.nbi"))
 
 

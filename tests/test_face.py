@@ -223,6 +223,15 @@ def test_warming_up_changes_nothing_that_is_shown():
     np.testing.assert_array_equal(face.geometry.vertices, before)
 
 
+def test_warmed_up_solvers_have_the_tables_of_the_face():
+    model = load_model("onyx", asymmetry=0.25)
+    made = model.__dict__.setdefault("_derived", {})
+    Face(model).warm_up()
+    assert not [name for name in made if name.startswith(("mpeg4.", "arkit."))]
+    Face(model).warm_up(solvers=True)
+    assert {name.partition(".")[0] for name in made} >= {"mpeg4", "arkit"}
+
+
 @pytest.mark.gl
 def test_a_kept_pose_is_drawn_without_changing_the_face():
     face = Face()

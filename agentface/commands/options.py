@@ -180,26 +180,29 @@ def make_face(
     compiled: bool = True,
     look: str | None = None,
     running: bool = False,
+    driven: bool = False,
     liveliness: float = 0.0,
     seed: int = 0,
 ) -> Face:
     """The face that the options name; not ``compiled``, it is ready sooner and slow a frame.
 
-    ``running``: with all loaded that its first frames need, or compiled the first time on a machine. A terminal is
-    told of the wait.
+    ``running``: with all loaded that its first frames need, or compiled the first time on a machine; ``driven``: with
+    all compiled then that the first FAP or weight of ARKit's needs, too. A terminal is told of the wait.
     """
     from agentface.face import Face
+    from agentface.kernel import any_kept
 
-    with wait_told(face, compiled=compiled):
+    solvers = driven and not any_kept("mpeg4")
+    with wait_told(face, compiled=compiled, solvers=solvers):
         made = Face(face, deformer=deformer, compiled=compiled, look=look, liveliness=liveliness, seed=seed)
         if running:
-            made.warm_up()
+            made.warm_up(solvers=solvers)
     return made
 
 
 @contextmanager
-def wait_told(face: str, *, compiled: bool) -> Iterator[None]:
-    """Have a terminal told that kernels are compiled in the block, the first time on a machine."""
+def wait_told(face: str, *, compiled: bool, solvers: bool = False) -> Iterator[None]:
+    """Have a terminal told that kernels are compiled in the block, the first time on a machine, or ``solvers``."""
     terminal = console()
     if not terminal.is_terminal:
         yield
@@ -207,7 +210,7 @@ def wait_told(face: str, *, compiled: bool) -> Iterator[None]:
     from agentface.kernel import any_kept
 
     # asked once: what a deformer is made of may be compiled before its kernels are
-    known = not compiled or any_kept()
+    known = not compiled or (any_kept() and not solvers)
     with terminal.status(f"preparing {face}" if known else _COMPILING):
         yield
 

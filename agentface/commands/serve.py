@@ -108,7 +108,7 @@ def serve(
     from agentface.io.osc.server import OscServer
 
     made = [
-        make_face(name, deformer, look=look, running=True, liveliness=liveliness, seed=seed)
+        make_face(name, deformer, look=look, running=True, driven=True, liveliness=liveliness, seed=seed)
         for seed, name in enumerate(names)
     ]
     faces = vmc.first(_by_id(made, ids))

@@ -19,7 +19,7 @@ from agentface.deform.protocol import deformer_names
 def screen(monkeypatch):
     """What a terminal is told while a face is made, which takes no time here."""
     said = StringIO()
-    face = SimpleNamespace(warm_up=lambda: said.write("warmed up"))
+    face = SimpleNamespace(warm_up=lambda *, solvers: said.write("solvers, too" if solvers else "warmed up"))
     monkeypatch.setattr("agentface.face.Face", lambda *_, **__: face)
     monkeypatch.setattr(options, "console", lambda: Console(file=said, force_terminal=True, width=120))
     return said
@@ -47,6 +47,17 @@ def test_a_deformer_that_compiles_a_part_leaves_the_wait_for_the_rest_told(monke
     assert "warmed up" in screen.getvalue()
     assert "compiling for this machine" in screen.getvalue()
     assert "preparing" not in screen.getvalue()
+
+
+def test_what_is_driven_compiles_what_solves_for_it_the_first_time(monkeypatch, screen):
+    kept = {"deform": True, "mpeg4": False}
+    monkeypatch.setattr(kernel, "any_kept", lambda room="deform": kept[room])
+    options.make_face("onyx", "geometric", running=True, driven=True)
+    assert "solvers, too" in screen.getvalue()
+    assert "compiling for this machine" in screen.getvalue()
+    kept["mpeg4"] = True
+    options.make_face("onyx", "geometric", running=True, driven=True)
+    assert "warmed up" in screen.getvalue()
 
 
 def test_what_is_no_terminal_is_told_nothing(monkeypatch, screen):

@@ -39,7 +39,7 @@ def failed(*arguments, code=1):
 @pytest.fixture(autouse=True)
 def _quick(monkeypatch):
     """Without waiting for what only a window needs at once."""
-    monkeypatch.setattr(Face, "warm_up", lambda _: None)
+    monkeypatch.setattr(Face, "warm_up", lambda _, **__: None)
 
 
 def put(folder, kind, name=None):
