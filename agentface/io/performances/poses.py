@@ -145,7 +145,8 @@ class _Reader:
         if not any(fits):
             self._tell((name,), f"numbers of shape {wanted}", f"those of {array.shape}")
             return None
-        return array.astype(np.float64)
+        with np.errstate(invalid="ignore", over="ignore"):  # what is no finite number is told where it is looked at
+            return array.astype(np.float64)
 
     def _poses(self, places: list[int]) -> Floats:
         values = self._array("poses", (-1, len(places)))

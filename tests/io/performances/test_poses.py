@@ -202,6 +202,16 @@ def test_every_fault_of_an_archive_is_told(wrong, message):
     assert all(fault.file == Path("a.npz") for fault in caught.value.faults)
 
 
+def test_numbers_that_no_double_holds_are_a_fault_without_a_warning():
+    signalling = np.zeros((3, 2), np.float32)
+    signalling.view(np.uint32).flat[1] = 0x7F810001  # a NaN at whose cast processors raise a flag
+    huge = np.zeros((3, 2), np.longdouble)
+    huge.flat[1] = np.longdouble("1e4000")
+    for numbers, got in ((signalling, "nan"), (huge, "inf")):
+        with pytest.raises(DataError, match=f"got {got}"):
+            read_npz(archive_of(**(GIVEN | {"poses": numbers})))
+
+
 HEADS = st.tuples(st.sampled_from(sorted(GIVEN)), st.integers(0, 200), st.binary(min_size=1, max_size=6))
 
 
