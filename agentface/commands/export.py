@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -148,7 +149,8 @@ def _html(asked: Asked) -> dict[str, Any]:
     found = opened(asked.performance, asked.file_fps)
     face = make_face(asked.face, asked.deformer, look=asked.look, running=True)
     PerformancePage.check()
-    page = PerformancePage(face.model, load_look(face.model, asked.look), basis_of(face, asked.deformer, tell))
+    basis = basis_of(face, asked.deformer, tell, partial(progress, total=1.0))
+    page = PerformancePage(face.model, load_look(face.model, asked.look), basis)
     with until_told() as ending:
         _playing(face, found, asked.fps, ending)(page)
     sound = found.sound()

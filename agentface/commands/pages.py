@@ -5,12 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
-from functools import wraps
+from functools import partial, wraps
 from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
 from agentface.commands.options import optional_address
+from agentface.commands.progress import progress
 from agentface.commands.streams import say, tell
 
 if TYPE_CHECKING:
@@ -61,8 +62,10 @@ def served_pages(
         yield []
         return
     from agentface.io.web.server import WebServer
+    from agentface.io.web.stage import basis_of
 
-    options: dict[str, Any] = {"token": asked.token, "origins": asked.origins, "told": tell}
+    measure = partial(basis_of, watched=partial(progress, total=1.0))
+    options: dict[str, Any] = {"token": asked.token, "origins": asked.origins, "told": tell, "measure": measure}
     with WebServer(faces, *asked.address, deformer=deformer, look=look, fps=fps, **options) as server:
         for line in (f"the page is {server.url}", *server.access.told("it")):
             say(line)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import gzip
 import time
 from collections.abc import Callable
+from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass
 from hashlib import blake2b
 from threading import Lock
@@ -21,6 +22,7 @@ from agentface.io.web.frames import FrameWriter, Mode
 PROTOCOL = 1
 Measure = Callable[[Face, str, Callable[[str], object]], Basis]
 """Finds the basis of a face and the name of its deformer; tells what takes long."""
+Watch = AbstractContextManager[Callable[[float], object]]
 HeadEncoder = Callable[[HeadModel, str | None, Basis], bytes]
 """Makes the file of a head, in a look of its own, with a basis."""
 
@@ -104,14 +106,23 @@ class FaceStage:
         }
 
 
-def basis_of(face: Face, deformer: str, told: Callable[[str], object] = lambda _: None) -> Basis:
-    """The basis of a face, made once on a machine; ``told`` is told when that takes a while."""
+def basis_of(
+    face: Face,
+    deformer: str,
+    told: Callable[[str], object] = lambda _: None,
+    watched: Callable[[str], Watch] = lambda _: nullcontext(lambda _: None),
+) -> Basis:
+    """The basis of a face, made once on a machine; ``told`` is told when that takes a while.
+
+    What ``watched`` gives for a name is entered meanwhile, and told how much is done, 0..1.
+    """
     samples = SAMPLES if hasattr(face.deformer, "worker") else FEW_SAMPLES
 
     def make(model: HeadModel) -> Basis:
         told(f"measuring how {model.name} moves, for pages: once on this machine")
         start = time.perf_counter()
-        made = make_basis(model, deformer, samples)
+        with watched(f"how {model.name} moves") as done:
+            made = make_basis(model, deformer, samples, done)
         told(f"measured in {time.perf_counter() - start:.0f} s")
         return made
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import struct
+from contextlib import contextmanager
 
 import numpy as np
 import pytest
@@ -112,11 +113,28 @@ def test_a_basis_of_few_samples_is_near_already(model, basis, writer, crowd):
 
 
 def test_a_basis_of_fewer_samples_is_not_taken_for_a_full_one(monkeypatch):
-    monkeypatch.setattr(stage, "make_basis", lambda model, deformer, samples: (deformer, samples))
+    monkeypatch.setattr(stage, "make_basis", lambda model, deformer, samples, done: (deformer, samples))
     face = Face("onyx")
     for samples in ((1, 2), (3, 4)):
         monkeypatch.setattr(stage, "SAMPLES", samples)
         assert stage.basis_of(face, "geometric") == ("geometric", samples)
+
+
+def test_who_waits_for_a_basis_is_told_how_much_of_it_is_done(monkeypatch):
+    monkeypatch.setattr("agentface.head.model.prepared", lambda stamp, name, make: make())
+    monkeypatch.setattr(stage, "SAMPLES", (71, 5))
+    face, said, watched = Face("onyx"), [], []
+
+    @contextmanager
+    def watch(name):
+        watched.append(name)
+        yield watched.append
+        watched.append("over")
+
+    stage.basis_of(face, "geometric", said.append, watch)
+    assert [line.partition(" ")[0] for line in said] == ["measuring", "measured"]
+    assert (watched[0], watched[-2:]) == ("how onyx moves", [1.0, "over"])
+    assert watched[1:-1] == sorted(watched[1:-1])
 
 
 @pytest.mark.soak

@@ -37,7 +37,7 @@ class Served:
         self.sent.pop(self.server._frame - _KEPT, None)
 
 
-def rough_basis(face: Face, deformer: str, _: Any = None) -> Basis:
+def rough_basis(face: Face, deformer: str, *_: Any) -> Basis:
     """As :func:`agentface.io.web.stage.basis_of`, of few samples."""
     made: Basis = face.model.derived(f"tests.web.basis.{deformer}", lambda model: make_basis(model, deformer, _SAMPLES))
     return made
