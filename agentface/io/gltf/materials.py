@@ -20,8 +20,10 @@ from agentface.view.gl.ownership import Ownership
 from agentface.view.skin.template import skin_template
 
 SKIN_SIDE, EYE_SIDE, HAIR_SIDE, SCALP_SIDE = 1024, 512, 1024, 512
-_ROUGH = {"skin": 0.5, "eye": 0.08, "teeth": 0.2, "tongue": 0.35, "flesh": 0.45, "hair": 0.6, "hair_sheet": 0.5,
+_ROUGH = {"skin": 0.6, "eye": 0.08, "teeth": 0.2, "tongue": 0.35, "flesh": 0.45, "hair": 0.6, "hair_sheet": 0.5,
           "scalp": 0.75, "cloth": 0.9}  # fmt: skip
+_IOR, _SKIN_IOR = "KHR_materials_ior", 1.4
+"""Khronos' extension, and skin's index of refraction; without it that of glass, whose gloss is half as strong again."""
 _BOTH_SIDES = ("hair", "hair_sheet", "flesh")
 _ALPHA: dict[str, dict[str, Any]] = {
     "hair_sheet": {"alphaMode": "MASK", "alphaCutoff": 0.5},
@@ -41,6 +43,7 @@ def add_materials(writer: GltfWriter, model: HeadModel, look: Look, parts: Seque
         for name, image in pictures.items()
         for kind, mime in [_PNG if image.shape[-1] == 4 else _JPEG]
     }
+    writer.use(_IOR)
     return {
         name: writer.add("materials", _material(name, look, textures.get(name)))
         for name in dict.fromkeys(part.material for part in parts)
@@ -96,4 +99,5 @@ def _material(name: str, look: Look, texture: int | None) -> dict[str, Any]:
     if name == "cloth":
         surface["baseColorFactor"] = [*look.cloth, 1.0]
     both = {"doubleSided": True} if name in _BOTH_SIDES else {}
-    return {"name": name, "pbrMetallicRoughness": surface, **both, **_ALPHA.get(name, {})}
+    soft = {"extensions": {_IOR: {"ior": _SKIN_IOR}}} if name == "skin" else {}
+    return {"name": name, "pbrMetallicRoughness": surface, **both, **soft, **_ALPHA.get(name, {})}

@@ -45,6 +45,12 @@ class GltfWriter(GltfBuffer):
         """The GLB file."""
         return self.binary(self.document)
 
+    def use(self, extension: str) -> None:
+        """Name an extension that pieces of the document have."""
+        names: list[str] = self.document.setdefault("extensionsUsed", [])
+        if extension not in names:
+            names.append(extension)
+
     def add(self, kind: str, piece: Mapping[str, Any]) -> int:
         """A piece of the document's list ``kind``."""
         pieces: list[Any] = self.document.setdefault(kind, [])

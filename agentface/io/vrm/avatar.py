@@ -49,7 +49,7 @@ def encode_avatar(model: HeadModel, look: Look, deformer: Deformer, told: Told =
         for index, name in enumerate(own):
             binds[name].append({"node": node, "index": index, "weight": 1.0})
     thumbnail = writer.image("thumbnail", encode(_portrait(model, look), "x.jpg"), "image/jpeg")
-    writer.document["extensionsUsed"] = [EXTENSION]
+    writer.use(EXTENSION)
     writer.document["extensions"] = {
         EXTENSION: {
             "specVersion": "1.0",
