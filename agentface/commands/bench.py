@@ -20,7 +20,7 @@ def bench(*, name: str | None, volume: bool, json_file: str | None, face: str, d
 
     They are deform, fuzzy, papers, frame, motion, latency, crowd, render, start, tissue, mpeg4, arkit, web and
     texture. Of all of them, those that draw are left out, and said to be, on a machine without OpenGL, and web without
-    its extra. The laws that the mouth keeps while it speaks take an hour, and are measured when asked for alone:
+    its extra. The laws that the mouth keeps while it speaks take half an hour, and are measured when asked for alone:
     speech.
     """
     from agentface.deform.protocol import check_deformer

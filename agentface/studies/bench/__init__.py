@@ -30,7 +30,7 @@ BENCHES: dict[str, str] = {
 """The benchmarks and what they compare; each is a module of this package with ``run() -> dict``."""
 PARTS: dict[str, str] = {
     "tissue_volume": "the second paper's volume force, its forms and ours, at several strengths",
-    "speech": "the laws of a speaking mouth: every emotion and every two, several rates and loudnesses; an hour",
+    "speech": "the laws of a speaking mouth: every emotion and every two, several rates and loudnesses; half an hour",
 }
 """What is measured when it is asked for alone."""
 
