@@ -8,16 +8,22 @@ from __future__ import annotations
 import argparse
 import asyncio
 import base64
+import os
 import sys
 from pathlib import Path
 
 from mcp.client.client import Client
 from mcp.client.stdio import StdioServerParameters, stdio_client
 
+DISPLAY = ("DISPLAY", "WAYLAND_DISPLAY", "XAUTHORITY", "XDG_RUNTIME_DIR")
+"""What a window needs of the environment, of which MCP's clients hand on next to nothing by themselves."""
+
 
 async def converse(view: str, picture: Path | None) -> None:
     """Show joy, nod, and be told what is wrong with a wrong name."""
-    server = StdioServerParameters(command=sys.executable, args=["-m", "agentface", "mcp", "--view", view])
+    display = {name: os.environ[name] for name in DISPLAY if name in os.environ}
+    command = ["-m", "agentface", "mcp", "--view", view]
+    server = StdioServerParameters(command=sys.executable, args=command, env=display)
     async with Client(stdio_client(server)) as face:
         print("tools:", ", ".join(tool.name for tool in (await face.list_tools()).tools))
         await face.call_tool("set_mood", {"emotions": {"happiness": 0.2}})

@@ -5,6 +5,7 @@ import select
 import socket
 import subprocess
 import sys
+from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
@@ -12,12 +13,15 @@ import pytest
 from pythonosc.osc_message import OscMessage
 from pythonosc.osc_message_builder import OscMessageBuilder
 
+from tests.display import on_a_virtual_display
+from tests.tools import require
+
 EXAMPLES = Path(__file__).parent.parent / "examples"
 pytestmark = [pytest.mark.gl, pytest.mark.slow]
 
 
-def run(name: str, *arguments: object) -> str:
-    command = [sys.executable, str(EXAMPLES / name), *map(str, arguments)]
+def run(name: str, *arguments: object, before: Sequence[str] = ()) -> str:
+    command = [*before, sys.executable, str(EXAMPLES / name), *map(str, arguments)]
     return subprocess.run(command, check=True, capture_output=True, text=True, timeout=240).stdout
 
 
@@ -54,9 +58,11 @@ def test_a_speaker_is_filmed_with_all_of_its_sound(tmp_path):
     assert f"{len(times)} frames, 4.57 s of sound" in said
 
 
-def test_a_program_uses_the_tools_of_a_face(tmp_path):
+def test_a_program_uses_the_tools_of_a_face_in_a_window(tmp_path):
     pytest.importorskip("mcp")
-    said = run("mcp_agent.py", "--view", "none", "--picture", tmp_path / "seen.png")
+    pytest.importorskip("glfw")
+    require("xvfb-run")
+    said = run("mcp_agent.py", "--picture", tmp_path / "seen.png", before=on_a_virtual_display())
     assert size_of(tmp_path / "seen.png") == (512, 512)
     assert "'happiness': 0.8" in said
     assert "expected the name of one gesture, got 'wave'" in said

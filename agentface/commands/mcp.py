@@ -30,6 +30,8 @@ if TYPE_CHECKING:
 
 _HTTP = "Serve over HTTP instead, such as 127.0.0.1:8090."
 _FPS = 60.0
+_NO_WINDOW = """A client of MCP hands on next to nothing of its environment: have it set "env": {"DISPLAY": ":0"}.
+Without a window:  agentface mcp --view none"""
 
 
 @click.command()
@@ -170,5 +172,5 @@ def _show(face: Face, actor: Actor, ending: Ending, view: str, look: str | None,
     try:
         window = make_window(face, tell, look=look, quality=quality)
     except GraphicsError as error:
-        raise GraphicsError(f"{error}\nWithout a window:  agentface mcp --view none") from error
+        raise GraphicsError(f"{error}\n{_NO_WINDOW}") from error
     window.run([actor], stopped=ending.told)
