@@ -12,8 +12,10 @@ import numpy as np
 from agentface import Face
 from agentface.arkit.shape_solver import ShapeSolver
 from agentface.deform.crowd import Crowd
+from agentface.deform.finish.finish import Finish
+from agentface.deform.pipeline import GeometricDeformer
 from agentface.deform.protocol import DEFAULT_DEFORMER, make_deformer
-from agentface.head.model import load_model
+from agentface.head.model import HeadModel, load_model
 from agentface.mpeg4.fap_solver import FapSolver
 from agentface.parameters import NEUTRAL, FacePose
 from agentface.resources import face_names
@@ -22,19 +24,30 @@ from agentface.resources import face_names
 def warm(deformer: str) -> None:
     """A step of each face with one deformer, with its asymmetry and without.
 
-    With the geometric one also many faces at once, and FAPs and ARKit's weights that are solved for.
+    With the geometric one also its stages one by one, many faces at once, and FAPs and ARKit's weights that are solved
+    for.
     """
     for name in face_names():
         with Face(name, deformer=deformer) as face:
             face.set_emotion("happiness", 1.0, fade=0.0)
             face.step(1 / 60)
         if deformer == DEFAULT_DEFORMER:
+            warm_stages(load_model(name))
             FapSolver(load_model(name)).solve(np.zeros(68))
             ShapeSolver(load_model(name)).weights(NEUTRAL)
             with Crowd(load_model(name)) as crowd:
                 crowd.deform(NEUTRAL[None])
         symmetric = make_deformer(deformer, load_model(name, asymmetry=0.0))
         symmetric.step(FacePose.of(mentalis=0.5), 1 / 60)
+
+
+def warm_stages(model: HeadModel) -> None:
+    """The last part of every deformer and each stage of the geometric one, which are otherwise parts of one kernel."""
+    deformer = GeometricDeformer(model)
+    geometry = deformer.at(FacePose())
+    Finish(model).apply(NEUTRAL, geometry)
+    for act in deformer.stages(geometry).values():
+        act(FacePose())
 
 
 if __name__ == "__main__":
