@@ -9,7 +9,8 @@ from hypothesis import settings
 from tests.tools import pytest_make_collect_report, pytest_runtest_makereport  # noqa: F401  # pytest calls them
 
 # The same examples in every run, and no verdict by the clock: a busy machine fails nothing.
-settings.register_profile("agentface", deadline=None, derandomize=True)
+settings.register_profile("agentface", deadline=None, derandomize=True, max_examples=50)
+settings.register_profile("soak", settings.get_profile("agentface"), max_examples=100)
 settings.load_profile("agentface")
 _TRACED_IN_CHILDREN = "COVERAGE_PROCESS_CONFIG"
 

@@ -33,8 +33,9 @@ def warm(deformer: str) -> None:
             face.step(1 / 60)
         if deformer == DEFAULT_DEFORMER:
             warm_stages(load_model(name))
-            FapSolver(load_model(name)).solve(np.zeros(68))
-            ShapeSolver(load_model(name)).weights(NEUTRAL)
+            for model in (load_model(name), load_model(name, asymmetry=0.0)):
+                FapSolver(model).solve(np.zeros(68))
+                ShapeSolver(model).weights(NEUTRAL)
             with Crowd(load_model(name)) as crowd:
                 crowd.deform(NEUTRAL[None])
         symmetric = make_deformer(deformer, load_model(name, asymmetry=0.0))

@@ -17,7 +17,7 @@ from agentface import Face
 from agentface.cli import cli
 from agentface.io.vmc.sender import VmcSender
 from agentface.live.loop import Frame
-from tests.browser import address, viewer
+from tests.browser import address, places, viewer
 
 pytestmark = [pytest.mark.slow, pytest.mark.gl]
 BONES = ("head", "leftEye", "rightEye")
@@ -49,7 +49,7 @@ class Bridge:
 
     def skin(self):
         """The places of the skin's vertices in mm."""
-        return 1e3 * np.array(self.page.evaluate("places('skin')")).reshape(-1, 3)
+        return 1e3 * places(self.page, "skin")
 
     def clear(self):
         self.face.neutral(0.0)
