@@ -53,7 +53,7 @@ window.shape = (weights) => {
   });
 };
 
-window.seek = (time) => mixer.setTime(time);
+window.seek = (time) => { mixer.setTime(time); };  // the mixer itself is not to be returned: all of it would be sent
 
 window.scene_of = named;
 

@@ -88,6 +88,7 @@ def test_a_mouth_that_does_not_close_breaks_them(monkeypatch):
 
 
 @pytest.mark.slow
+@pytest.mark.untraced
 @pytest.mark.parametrize("face", face_names())
 def test_tissue_reaches_the_closures(face):
     model = load_model(face)

@@ -19,7 +19,7 @@ from agentface.io.vmc.sender import VmcSender
 from agentface.live.loop import Frame
 from tests.browser import address, places, viewer
 
-pytestmark = [pytest.mark.slow, pytest.mark.gl]
+pytestmark = [pytest.mark.slow, pytest.mark.gl, pytest.mark.untraced]
 BONES = ("head", "leftEye", "rightEye")
 CAMERA = [0.0, 1.53, 1.15], [0.0, 1.5, 0.0]
 
