@@ -19,18 +19,22 @@ from agentface.head.model import HeadModel, load_model
 from agentface.mpeg4.fap_solver import FapSolver
 from agentface.parameters import NEUTRAL, FacePose
 from agentface.resources import face_names
+from agentface.view.gl.quality import QUALITIES
 
 
 def warm(deformer: str) -> None:
     """A step of each face with one deformer, with its asymmetry and without.
 
-    With the geometric one also its stages one by one, many faces at once, and FAPs and ARKit's weights that are solved
-    for.
+    With the geometric one also a picture in each quality, its stages one by one, many faces at once, and FAPs and
+    ARKit's weights that are solved for.
     """
     for name in face_names():
         with Face(name, deformer=deformer) as face:
             face.set_emotion("happiness", 1.0, fade=0.0)
             face.step(1 / 60)
+            if deformer == DEFAULT_DEFORMER:
+                for quality in QUALITIES:
+                    face.render(size=(64, 64), quality=quality)
         if deformer == DEFAULT_DEFORMER:
             warm_stages(load_model(name))
             for model in (load_model(name), load_model(name, asymmetry=0.0)):
