@@ -108,7 +108,7 @@ def _write(path: Path, content: object) -> None:
 
 
 def keep_newest(folder: Path, count: int) -> None:
-    """Remove all but the ``count`` entries of ``folder`` that have the latest times; others may be removing them, too."""
+    """Remove all but the ``count`` entries of ``folder`` with the latest times; others may be removing them, too."""
     times: list[tuple[float, Path]] = []
     for entry in folder.iterdir():
         try:

@@ -31,7 +31,11 @@ def warm(deformer: str) -> None:
     for name in face_names():
         with Face(name, deformer=deformer) as face:
             face.set_emotion("happiness", 1.0, fade=0.0)
-            face.step(1 / 60)
+            face.set_emotion("surprise", 0.5)
+            face.set_muscle("risorius", 0.5, fade=0.1)
+            face.speak([("p", 0.0, 0.1), ("aa", 0.1, 0.3)])
+            for _ in range(3):
+                face.step(1 / 60)
             if deformer == DEFAULT_DEFORMER:
                 for quality in QUALITIES:
                     face.render(size=(64, 64), quality=quality)
