@@ -66,8 +66,9 @@ warm: $(INSTALLED)
 quick: $(INSTALLED) opengl lint ## a verdict within a minute: ruff, mypy and the tests that are not slow
 	@$(BIN)/pytest -q $(PARALLEL) -m "not slow and not soak"
 
-soak: $(INSTALLED) opengl tools page ## the tests that take minutes
+soak: $(INSTALLED) opengl tools page ## the tests that take minutes, and twice as many examples where hypothesis makes them
 	@$(BIN)/pytest $(PARALLEL) -m soak --timeout 3600
+	@$(BIN)/pytest $(PARALLEL) -m "hypothesis and not soak and not frameworks" --hypothesis-profile soak
 
 matrix: $(INSTALLED) opengl tools page ## all tests on every Python that is found, and once with the lowest versions of the libraries
 	@$(BIN)/python tests/matrix.py $(PARALLEL)

@@ -13,6 +13,7 @@ import shutil
 import sys
 import tempfile
 from collections.abc import Callable, Iterable
+from contextlib import suppress
 from functools import cache
 from hashlib import blake2b
 from pathlib import Path
@@ -23,7 +24,7 @@ _PACKAGE = Path(__file__).parent
 _VERSIONS = 8
 """Versions of the sources of which something is kept."""
 _ENTRIES = 64
-"""Prepared things that are kept of each."""
+"""Prepared things that are kept of each: those that were used last."""
 
 
 def cache_folder() -> Path | None:
@@ -70,6 +71,8 @@ def prepared(stamp: str, name: str, make: Callable[[], _T]) -> _T:
     path = folder / f"{stamp}-{name}"
     found: list[_T] = _read(path)
     if found:
+        with suppress(OSError):  # another process has removed it, or it may only be read
+            os.utime(path)
         return found[0]
     made = make()
     _write(path, made)
@@ -105,7 +108,7 @@ def _write(path: Path, content: object) -> None:
 
 
 def keep_newest(folder: Path, count: int) -> None:
-    """Remove all but the ``count`` entries of ``folder`` that were written last; others may be removing them, too."""
+    """Remove all but the ``count`` entries of ``folder`` with the latest times; others may be removing them, too."""
     times: list[tuple[float, Path]] = []
     for entry in folder.iterdir():
         try:

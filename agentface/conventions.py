@@ -9,7 +9,7 @@ Names of paired muscles end in ``_l`` and ``_r``, the person's left and right.
 from __future__ import annotations
 
 import math
-from typing import Any, TypeAlias
+from typing import Any, TypeAlias, TypeVar
 
 import numpy as np
 import numpy.typing as npt
@@ -29,6 +29,16 @@ ROUNDING = 1e-6
 
 Eight steps of single precision at 1, what is left of a few sums and products; far less than can be seen.
 """
+
+
+_Array = TypeVar("_Array", bound=npt.NDArray[Any])
+
+
+def read_only(array: _Array) -> _Array:
+    """The same numbers, not to be written, as a pose's are: kernels are compiled for these and for others apart."""
+    seen = array.view()
+    seen.flags.writeable = False
+    return seen
 
 
 def check_fraction(where: str, value: Any) -> float:

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+from base64 import b64decode
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
+from agentface.conventions import Doubles
 from tests import tools
 from tests.npm import node_modules
 
@@ -64,3 +67,8 @@ def viewer(size: tuple[int, int] = (480, 480)) -> Iterator[Any]:
 def address(path: Path) -> str:
     """Where the page finds a file."""
     return f"{_ORIGIN}file{path}"
+
+
+def places(page: Any, name: str) -> Doubles:
+    """``(N, 3)``: where the page shows the vertices of a mesh."""
+    return np.frombuffer(b64decode(page.evaluate("name => places(name)", name))).reshape(-1, 3)

@@ -88,3 +88,15 @@ def test_only_the_newest_are_kept(tmp_path):
         os.utime(entry, (1000 - age, 1000 - age))
     cache.keep_newest(tmp_path, 3)
     assert sorted(path.name for path in tmp_path.iterdir()) == ["0", "1", "2"]
+
+
+def test_what_was_used_last_is_kept(folder, monkeypatch):
+    monkeypatch.setattr(cache, "_ENTRIES", 2)
+    make, calls = counted()
+    for age, stamp in enumerate(("b", "a")):
+        cache.prepared(stamp, "x", make)
+        os.utime(folder / f"{stamp}-x", (1000 - age, 1000 - age))
+    cache.prepared("a", "x", make)
+    cache.prepared("c", "x", make)
+    assert sorted(path.name for path in folder.iterdir()) == ["a-x", "c-x"]
+    assert len(calls) == 3

@@ -16,7 +16,7 @@ from tests.clocks import ServedClock, send
 from tests.deform import jelly
 from tests.io.osc_bytes import message
 
-pytestmark = [pytest.mark.gl, pytest.mark.slow]
+pytestmark = [pytest.mark.gl, pytest.mark.slow, pytest.mark.untraced]
 MOODS = """<emotionml version="1.0" xmlns="http://www.w3.org/2009/10/emotionml"
  category-set="http://www.w3.org/TR/emotion-voc/xml#big6">
 <emotion duration="500"><category name="surprise"/></emotion></emotionml>"""

@@ -17,7 +17,7 @@ from tests.display import on_a_virtual_display
 from tests.tools import require
 
 EXAMPLES = Path(__file__).parent.parent / "examples"
-pytestmark = [pytest.mark.gl, pytest.mark.slow]
+pytestmark = [pytest.mark.gl, pytest.mark.slow, pytest.mark.untraced]
 
 
 def run(name: str, *arguments: object, before: Sequence[str] = ()) -> str:

@@ -226,6 +226,7 @@ cli(["play", *sys.argv[1:]])
 """
 
 
+@pytest.mark.untraced
 @pytest.mark.gl
 @pytest.mark.slow
 def test_the_window_plays_the_document_and_closes(tmp_path):

@@ -130,6 +130,7 @@ def test_a_request_compares_hashes_pickles_copies_and_stays(request_):
             setattr(request_, fields[0].name, None)
 
 
+@pytest.mark.untraced
 @given(st.lists(ANY_REQUEST, max_size=6))
 def test_noted_requests_give_the_same_motion_again(plan):
     first, second, noted = Face(head_model()), Face(head_model()), []

@@ -139,6 +139,7 @@ def test_a_tracker_s_smile_leaves_for_an_avatar():
 
 
 @pytest.mark.slow
+@pytest.mark.untraced
 @pytest.mark.parametrize("kind", [signal.SIGINT, signal.SIGTERM])
 def test_it_answers_and_ends_when_told(kind):
     from pythonosc.osc_message import OscMessage

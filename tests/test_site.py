@@ -41,6 +41,7 @@ def test_the_reference_names_modules_that_are_there():
 
 
 @pytest.mark.slow
+@pytest.mark.untraced
 def test_the_site_is_built_without_a_complaint_and_fetches_nothing(tmp_path):
     pytest.importorskip("zensical")
     settings = (ROOT / "zensical.toml").read_text().replace('"out/site"', '"site"')

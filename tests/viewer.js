@@ -53,7 +53,7 @@ window.shape = (weights) => {
   });
 };
 
-window.seek = (time) => mixer.setTime(time);
+window.seek = (time) => { mixer.setTime(time); };  // the mixer itself is not to be returned: all of it would be sent
 
 window.scene_of = named;
 
@@ -73,16 +73,18 @@ window.pose = ({ expressions = {}, gaze = null, bones = {} }) => {
   vrm.update(1 / 60);
 };
 
-// The places of a mesh's vertices in the scene, as shown: x, y, z, x, ...
+// The places of a mesh's vertices in the scene, as shown: x, y, z, x, ... in double precision and base 64, as lists of numbers take long.
 window.places = (name) => {
   loaded.scene.updateMatrixWorld(true);
-  const mesh = named(name), point = new THREE.Vector3(), found = [];
+  const mesh = named(name), point = new THREE.Vector3(), found = new Float64Array(3 * mesh.geometry.attributes.position.count);
   mesh.skeleton?.update();
-  for (let i = 0; i < mesh.geometry.attributes.position.count; i++) {
-    mesh.getVertexPosition(i, point).applyMatrix4(mesh.matrixWorld);
-    found.push(point.x, point.y, point.z);
+  for (let i = 0; i < found.length / 3; i++) {
+    mesh.getVertexPosition(i, point).applyMatrix4(mesh.matrixWorld).toArray(found, 3 * i);
   }
-  return found;
+  const bytes = new Uint8Array(found.buffer);
+  let text = "";
+  for (let i = 0; i < bytes.length; i += 8192) text += String.fromCharCode(...bytes.subarray(i, i + 8192));
+  return btoa(text);
 };
 
 // Where a mesh's material's picture is not grey: whether there is one, and how large.

@@ -9,7 +9,7 @@ from typing import Any, Self
 import numpy as np
 import numpy.typing as npt
 
-from agentface.conventions import Floats
+from agentface.conventions import Floats, read_only
 from agentface.deform.geometry import FaceArrays, FaceGeometry
 from agentface.deform.protocol import DEFAULT_DEFORMER, Deformer, Frames, make_deformer
 from agentface.errors import InvalidValueError
@@ -117,7 +117,7 @@ def _checked(poses: npt.ArrayLike | Sequence[FacePose]) -> Floats:
     with np.errstate(over="ignore"):  # what is too large for single precision is refused as infinite
         values = np.ascontiguousarray(given, np.float32)
     check_poses(values)
-    return values
+    return read_only(values)
 
 
 def _array(poses: npt.ArrayLike | Sequence[FacePose]) -> npt.NDArray[Any]:

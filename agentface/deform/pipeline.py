@@ -20,6 +20,8 @@ from agentface.head.model import HeadModel
 from agentface.parameters import VECTOR_MUSCLES, FacePose, check_pose, indices_of
 
 _FIRST_MUSCLE = indices_of(VECTOR_MUSCLES[0])[0]
+_SKIN_PART = int(Stage.VOLUMES), int(Stage.MIDPOINTS)
+_LAST_PART = int(FinishStage.SMOOTH_NORMALS), int(FinishStage.NECK)
 _MUSCLES = slice(_FIRST_MUSCLE, _FIRST_MUSCLE + len(VECTOR_MUSCLES))
 
 
@@ -97,19 +99,19 @@ class GeometricDeformer:
         face = geometry.arrays()
         acts: dict[str, Callable[[FacePose], None]] = {"muscles": lambda pose: self._contract(pose.array)}
         for stage in Stage:
-            acts[stage.name.lower()] = partial(self._skin_stages, stage, stage)
+            acts[stage.name.lower()] = partial(self._skin_stages, int(stage), int(stage))
         acts["copy"] = lambda _: self._copy(face)
         for last in FinishStage:
-            acts[last.name.lower()] = partial(self._last_stages, face, last, last)
+            acts[last.name.lower()] = partial(self._last_stages, face, int(last), int(last))
         return acts
 
     def _by_parts(self, first: int, last: int, poses: Floats, rows: FaceArrays) -> None:
         for index in range(first, last):
             values, face = poses[index], FaceArrays(*(array[index] for array in rows))
             self._contract(values)
-            self._deform(Stage.VOLUMES, Stage.MIDPOINTS, self._tables.skin, values, self._found, self._points)
+            self._deform(*_SKIN_PART, self._tables.skin, values, self._found, self._points)
             self._copy(face)
-            self._finish(FinishStage.SMOOTH_NORMALS, FinishStage.NECK, self._tables.finish, values, face)
+            self._finish(*_LAST_PART, self._tables.finish, values, face)
 
     def _contract(self, values: Floats) -> None:
         if self._method == "parallel":

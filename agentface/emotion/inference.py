@@ -8,7 +8,7 @@ from functools import cache
 import numpy as np
 
 from agentface.cache import prepared, stamp_of
-from agentface.conventions import Doubles
+from agentface.conventions import Doubles, read_only
 from agentface.emotion.batch import infer_in_numpy, weigh_in_numpy
 from agentface.emotion.explanation import Explanation, explain
 from agentface.emotion.rules import RuleBase
@@ -66,7 +66,7 @@ class Inference:
         That of two emotions stands at the first and the second, that of one alone on the diagonal.
         """
         out = np.empty((len(states), len(EMOTIONS), len(EMOTIONS)))
-        self._weigh(states, self.rulebase.gap, out)
+        self._weigh(read_only(states), self.rulebase.gap, out)
         return out
 
     def course(self, states: Doubles, weights: Doubles | None = None) -> Doubles:
@@ -75,7 +75,8 @@ class Inference:
         With ``weights`` in place of those that :meth:`weights` gives.
         """
         out = np.empty((len(states), len(MUSCLES)))
-        self._infer(states, self.weights(states) if weights is None else weights, *self._rules, SETS, out)
+        weights = self.weights(states) if weights is None else weights
+        self._infer(read_only(states), weights, *self._rules, SETS, out)
         return out
 
     def pose(self, state: State) -> FacePose:

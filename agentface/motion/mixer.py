@@ -112,6 +112,7 @@ class Mixer(MutableMapping[str, Channel]):
         self.blink = self._own("blink", blink)
         self.muscles = self._own("muscles", MuscleChannel(compiled=compiled))
         self._fixed = frozenset(self._layers)
+        self._arrange()
 
     def add(self, name: str, channel: Channel, *, priority: int | None = None, way: Way | None = None) -> None:
         """Add a channel, in place of the one that a program has added under this name.
@@ -131,6 +132,7 @@ class Mixer(MutableMapping[str, Channel]):
         if way is not None:
             rank = replace(rank, way=way, ways={})
         self._put(name, channel, rank)
+        self._arrange()
 
     def advance(self, dt: float) -> None:
         """Let ``dt`` seconds pass in every channel."""
@@ -226,7 +228,6 @@ class Mixer(MutableMapping[str, Channel]):
             raise InvalidValueError(f"channel {name}: names", "each parameter once", layer.names)
         self._layers.pop(name, None)
         self._layers[name] = layer
-        self._arrange()
 
     def _arrange(self) -> None:
         """Put what all channels want into one place, and the claims in order; the head's by themselves: where the eyes

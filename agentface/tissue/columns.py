@@ -6,7 +6,7 @@ another is Gauss and Seidel's order. Batches of a colour lie together; a column 
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import NamedTuple, TypeAlias
 
 import numpy as np
 
@@ -77,9 +77,9 @@ def pack(lattice: Lattice, groups: list[Indices]) -> Columns:
     place = np.empty(len(lattice.free), np.int32)
     batch, lane = np.nonzero(vertex >= 0)
     place[vertex[batch, lane]] = NODES * LANES * batch + lane
-    tables = _ring_tables(lattice, rings, moving, place)
-    chosen, real = np.maximum(moving, 0), moving >= 0
     own = _springs_by_pair(lattice)
+    tables = _ring_tables(lattice, rings, own, moving, place)
+    chosen, real = np.maximum(moving, 0), moving >= 0
     count = len(lattice.free)
     own_pull, own_inverse = np.ones((2, len(moving), 2, LANES), np.float32)
     for which, (here, there) in enumerate(CONNECTING):
@@ -128,6 +128,9 @@ def unpacked(columns: Columns, positions: Floats) -> Doubles:
     return np.ascontiguousarray(rows.reshape(-1, 3, 3).transpose(1, 0, 2), np.float64)
 
 
+_SpringsByPair: TypeAlias = dict[tuple[int, int], tuple[float, float]]
+
+
 class _RingTables(NamedTuple):
     first: Indices
     neighbour: Indices
@@ -155,12 +158,15 @@ def _ring(following: dict[int, int]) -> list[int]:
     return ring
 
 
-def coloured(lattice: Lattice, mirror: Indices, some: Indices | None = None) -> list[Indices]:
+def coloured(
+    lattice: Lattice, mirror: Indices, some: Indices | None = None, rings: list[list[int]] | None = None
+) -> list[Indices]:
     """Columns that move, or ``some`` of them, in groups in which none is beside another; images share a colour.
 
-    ``mirror (V,)`` is each vertex's image. Groups go from the forehead down, so that batches lie close together.
+    ``mirror (V,)`` is each vertex's image, ``rings`` are those of the lattice, for who has them. Groups go from the
+    forehead down, so that batches lie close together.
     """
-    rings = rings_of(lattice)
+    rings = rings_of(lattice) if rings is None else rings
     chosen = (np.flatnonzero(lattice.free) if some is None else some).astype(np.int32)
     colour, wanted = np.full(len(lattice.free), -1), set(chosen.tolist())
     order = chosen[np.argsort(-lattice.rest[0, chosen, 1], kind="stable")]
@@ -186,14 +192,17 @@ def _padded(vertices: Indices) -> Indices:
     return np.concatenate([vertices, np.full(-len(vertices) % LANES, -1)])
 
 
-def _springs_by_pair(lattice: Lattice) -> dict[tuple[int, int], tuple[float, float]]:
+def _springs_by_pair(lattice: Lattice) -> _SpringsByPair:
+    """Stiffness and length of the spring between two nodes, either of them first."""
     springs = lattice.springs
     pairs = zip(springs.ends.tolist(), springs.stiffness.tolist(), springs.length.tolist(), strict=True)
     return {key: (k, length) for (a, b), k, length in pairs for key in ((a, b), (b, a))}
 
 
-def _ring_tables(lattice: Lattice, rings: list[list[int]], moving: Indices, place: Indices) -> _RingTables:
-    springs, count = _springs_by_pair(lattice), len(lattice.free)
+def _ring_tables(
+    lattice: Lattice, rings: list[list[int]], springs: _SpringsByPair, moving: Indices, place: Indices
+) -> _RingTables:
+    count = len(lattice.free)
     prisms = {
         (a, b, c): 1.0 / volume
         for corners, volume in zip(lattice.prisms.corners[:, :3].tolist(), lattice.volumes.tolist(), strict=True)

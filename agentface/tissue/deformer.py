@@ -6,7 +6,7 @@ from functools import partial
 
 import numpy as np
 
-from agentface.conventions import Doubles, Floats
+from agentface.conventions import Doubles, Floats, read_only
 from agentface.deform import order
 from agentface.deform import tables as skin_tables
 from agentface.deform.finish import order as last_part
@@ -124,7 +124,9 @@ class TissueDeformer:
 
     def _write(self, positions: Floats, values: Floats, geometry: FaceGeometry) -> None:
         self._put(self._tissue.epidermis, positions, self._points)
-        others = np.where(self._driven, np.float32(0.0), values)  # tissue gathers by itself where its muscles pull
+        others = read_only(
+            np.where(self._driven, np.float32(0.0), values)
+        )  # tissue gathers by itself where its muscles pull
         skin = self._tables.skin
         self._deform(int(Stage.VOLUMES), int(Stage.VOLUMES), skin, others, self._found, self._points)
         self._found[:] = self._points[skin.lips.skin_count :, :1]

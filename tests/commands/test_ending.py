@@ -19,7 +19,7 @@ from agentface.commands.ending import until_told
 from tests.io.osc_bytes import message
 from tests.waiting import until
 
-pytestmark = [pytest.mark.gl, pytest.mark.slow]
+pytestmark = [pytest.mark.gl, pytest.mark.slow, pytest.mark.untraced]
 SERVE = (sys.executable, "-m", "agentface", "serve", "--osc", "127.0.0.1:0", "--size", "96x64", "--fps", "20")
 
 

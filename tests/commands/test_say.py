@@ -269,6 +269,7 @@ def test_what_is_heard_is_cut_where_it_is_hushed():
 
 
 @pytest.mark.slow
+@pytest.mark.untraced
 @pytest.mark.gl
 @pytest.mark.parametrize("words", [("[joy] Hello.",), ("--phones", "examples/hello.json")])
 def test_in_a_window_it_says_its_text_and_ends(words):

@@ -8,7 +8,7 @@ import sys
 
 import pytest
 
-pytestmark = pytest.mark.slow
+pytestmark = [pytest.mark.slow, pytest.mark.untraced]
 FULL, CLOSED, BROKEN = (
     ("> /dev/full", "No space left on device"),
     (">&-", "Bad file descriptor"),

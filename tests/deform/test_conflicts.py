@@ -1,4 +1,4 @@
-"""Two thousand random poses of the whole face: nothing flips, everything is finite; a tenth: nothing pokes through.
+"""Random poses of the whole face: nothing flips, everything is finite, and nothing pokes through some of them.
 
 The rays that look for what pokes through take nine tenths of the time; ``make soak`` looks at a third of many more.
 """
@@ -16,6 +16,8 @@ from agentface.parameters import FacePose
 from tests.deform.conflicts import Edges, Poking, fold_vertices, random_poses, ranges
 from tests.heads import deformer_of, head_model
 
+pytestmark = pytest.mark.untraced
+
 COUNT, SEED = 2000, 2003
 FACES = ("amber", "onyx")
 
@@ -23,22 +25,22 @@ FACES = ("amber", "onyx")
 @pytest.mark.slow
 @pytest.mark.parametrize("face", FACES)
 def test_random_poses(face):
-    check_poses(face, SEED, poke_every=10)
+    check_poses(face, SEED, COUNT // 5, poke_every=10)
 
 
 @pytest.mark.soak
 @pytest.mark.parametrize("seed", [SEED, *range(5)])
 @pytest.mark.parametrize("face", FACES)
 def test_twelve_thousand_random_poses(face, seed):
-    check_poses(face, seed, poke_every=3)
+    check_poses(face, seed, COUNT, poke_every=3)
 
 
-def check_poses(face, seed, poke_every):
+def check_poses(face, seed, count, poke_every):
     model = head_model(face)
     deformer, edges, poking = deformer_of(face), Edges.of(model), Poking(model)
     outside = ~edges.folding()
     flipped, through = {}, {}
-    for number, pose in enumerate(random_poses(COUNT, seed)):
+    for number, pose in enumerate(random_poses(count, seed)):
         geometry = deformer.at(pose)
         for name in (
             "vertices",

@@ -163,3 +163,15 @@ def test_a_closed_crowd_says_so(threads):
 def test_threads_are_counted_from_one(threads):
     with pytest.raises(InvalidValueError, match="threads"):
         Crowd(MODELS["amber"], threads)
+
+
+def test_poses_that_may_be_written_compile_nothing_anew():
+    from agentface.deform.order_compiled import frames
+
+    model = head_model()
+    deformer_of().at(FacePose())
+    known = list(frames.signatures)
+    for dtype in (np.float32, np.float64):
+        with Crowd(model) as crowd:
+            crowd.deform(np.zeros((2, COUNT), dtype))
+    assert frames.signatures == known

@@ -101,6 +101,7 @@ def deepest(points, corners):
     return most
 
 
+@pytest.mark.untraced
 @pytest.mark.parametrize("face", FACES)
 def test_nothing_gets_into_the_tongue(face):
     model = head_model(face)

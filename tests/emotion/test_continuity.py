@@ -15,6 +15,8 @@ from agentface.emotion.selector import MODES
 from agentface.emotion.state import EMOTIONS, EmotionState
 from agentface.parameters import MUSCLES
 
+pytestmark = pytest.mark.untraced
+
 STEP, LIMIT = 0.01, 0.05
 FINE = 4  # positions tried within a step
 LEVELS = np.linspace(0.0, 1.0, 21)

@@ -16,6 +16,8 @@ from agentface.emotion.state import EMOTIONS, EmotionState
 from agentface.parameters import MUSCLES
 from agentface.studies.bench.fuzzy import control_centroids, control_simulation
 
+pytestmark = pytest.mark.untraced
+
 TOLERANCE = 1e-9
 SINGLE_STATES, BLEND_STATES = 130, 15
 

@@ -333,6 +333,7 @@ def test_many_threads_ask_and_nothing_is_lost(face):
 
 
 @pytest.mark.slow
+@pytest.mark.untraced
 @given(st.lists(st.sampled_from(["say", "hush", "gesture", "play", "step", "cancel", "interrupt"]), max_size=25))
 def test_whatever_happens_each_future_is_resolved_once_and_each_text_told_once(script):
     with talking_face() as face:

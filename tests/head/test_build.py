@@ -54,6 +54,7 @@ def test_the_mirror_of_the_finer_mesh_is_its_mirror_image():
 
 
 @pytest.mark.slow
+@pytest.mark.untraced
 @given(st.lists(st.integers(0, 2), min_size=36, max_size=36))
 def test_a_skin_of_any_levels_is_closed_and_symmetric(levels):
     points, quads, mirror = sheet()

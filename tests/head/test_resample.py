@@ -162,6 +162,7 @@ def test_what_lies_between_rings_stays_in_the_middle():
 
 
 @pytest.mark.slow
+@pytest.mark.untraced
 def test_the_finer_and_the_coarser_face_move_alike(both):
     model, made = both
     before, now = kept(model, made)

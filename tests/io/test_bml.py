@@ -280,6 +280,7 @@ def written(element):
     return f"<{name}{told}>{''.join(map(written, children))}</{name}>"
 
 
+@pytest.mark.untraced
 @given(st.lists(ELEMENTS, max_size=6))
 def test_any_elements_are_a_block_or_faults(elements):
     block_or_faults(f'<bml id="z">{"".join(map(written, elements))}</bml>')

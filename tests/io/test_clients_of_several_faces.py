@@ -15,7 +15,7 @@ from pythonosc.udp_client import SimpleUDPClient
 from agentface.io.osc.codec import decode
 from tests.tools import require
 
-pytestmark = pytest.mark.slow
+pytestmark = [pytest.mark.slow, pytest.mark.untraced]
 
 
 @pytest.fixture(scope="module")

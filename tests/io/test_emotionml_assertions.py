@@ -192,6 +192,7 @@ PLAYED = [
 ]
 
 
+@pytest.mark.untraced
 @pytest.mark.parametrize("data", [case[1] for case in PLAYED], ids=[str(case[0]) for case in PLAYED])
 def test_what_the_standard_allows_is_played(data):
     score = read_emotionml(data)

@@ -16,7 +16,7 @@ from osc_bytes import message
 
 from tests.tools import require
 
-pytestmark = pytest.mark.slow
+pytestmark = [pytest.mark.slow, pytest.mark.untraced]
 
 
 @pytest.fixture(scope="module")

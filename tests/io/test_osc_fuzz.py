@@ -149,6 +149,7 @@ def fuzz(packets, seed):
         return face.status()
 
 
+@pytest.mark.untraced
 def test_ten_thousand_packets_lose_no_good_one():
     status = fuzz(10_000, seed=0)
     assert all(count > 100 for count in status["errors"].values()), "each way of being wrong is there"

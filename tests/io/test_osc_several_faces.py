@@ -87,6 +87,7 @@ ORDERS = st.lists(
 )
 
 
+@pytest.mark.untraced
 @settings(max_examples=60)
 @given(ORDERS)
 def test_each_face_is_left_as_by_its_own_messages_one_by_one(orders):

@@ -84,6 +84,7 @@ def test_any_units_are_one_oracle(levels):
         assert value == pytest.approx(expected.get(name, 0.0), abs=1e-9)
 
 
+@pytest.mark.untraced
 @given(LEVELS)
 def test_the_face_stays_in_its_ranges_and_mirrors(levels):
     face, image = (Face(head_model(), compiled=False) for _ in range(2))

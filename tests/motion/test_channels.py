@@ -124,6 +124,7 @@ def tell(mixer, deed, *arguments):
         mixer.release(*arguments)
 
 
+@pytest.mark.untraced
 @given(st.lists(st.tuples(DEEDS, st.lists(st.floats(0, 0.3), max_size=4)), max_size=8))
 def test_the_channels_together_show_what_each_parameter_would_by_itself(plan):
     mixer, oracle = Mixer(default_inference(), GAINS), Oracle()

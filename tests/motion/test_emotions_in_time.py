@@ -64,6 +64,7 @@ def run(channel, seconds, dt):
     return np.array(rows).reshape(-1, len(MUSCLES))
 
 
+@pytest.mark.untraced
 @given(scripts())
 def test_no_message_makes_a_speed_jump(script):
     # Over a hundred-thousandth of a second a speed can hardly change: 0.1 a second is a thousandth of the fastest.
@@ -92,6 +93,7 @@ OTHERS = st.one_of(
 )
 
 
+@pytest.mark.untraced
 @given(st.lists(st.tuples(OTHERS, WAITS), min_size=1, max_size=6))
 def test_no_message_makes_a_speed_of_any_parameter_jump(script):
     mixer, dt = Mixer(default_inference(), random=np.random.default_rng(0)), 1e-5
@@ -108,6 +110,7 @@ def test_no_message_makes_a_speed_of_any_parameter_jump(script):
 
 
 @pytest.mark.slow
+@pytest.mark.untraced
 @settings(max_examples=30)
 @given(scripts(st.none() | st.floats(0.2, 2.0), st.floats(0.0, 0.3)))
 def test_speeds_change_no_faster_than_those_of_a_quick_movement(script):
@@ -122,6 +125,7 @@ def test_speeds_change_no_faster_than_those_of_a_quick_movement(script):
     assert np.abs(np.diff(path, 2, axis=0)).max(initial=0.0) / 1e-6 < 2300.0
 
 
+@pytest.mark.untraced
 @settings(max_examples=25)
 @given(scripts(waits=st.integers(0, 4).map(lambda sixths: sixths / 6.0)))
 def test_frames_at_any_rate_agree_at_common_times(script):
@@ -282,6 +286,7 @@ class TestMood:
         np.testing.assert_array_equal(contractions(channel), default_inference().contractions(mood))
 
 
+@pytest.mark.untraced
 @given(st.integers(1, 60), st.floats(0.06, 0.4))
 def test_repeating_a_message_holds_nothing_back(times, fade):
     once, often = channel_of(), channel_of()

@@ -18,6 +18,7 @@ def run(envelope: Envelope, seconds: float) -> np.ndarray:
 
 
 @pytest.mark.slow
+@pytest.mark.untraced
 @given(moves)
 def test_never_jumps_however_often_it_is_interrupted(plan):
     envelope = Envelope(1)

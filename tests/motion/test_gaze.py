@@ -186,6 +186,7 @@ def test_the_same_point_again_changes_nothing():
     assert once.pose() == often.pose()
 
 
+@pytest.mark.untraced
 @given(st.tuples(st.floats(-5, 5), st.floats(-5, 5), st.floats(0.1, 3)), st.tuples(ANGLES, ANGLES, ANGLES))
 def test_any_point_is_looked_at_as_far_as_eyes_and_head_turn(point, turn):
     mixer = look(point, 0.0)

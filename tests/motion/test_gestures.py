@@ -92,6 +92,7 @@ def test_a_nod_goes_down_a_shake_aside_and_a_wink_shuts_one_eye():
     assert extremes("wink", *closer) == pytest.approx([0.0, 1.0, 0.0, 0.0], abs=1e-3)
 
 
+@pytest.mark.untraced
 @given(st.floats(0, 1))
 def test_half_as_strong_goes_half_as_far(strength):
     mixer = channels(liveliness=0.0)

@@ -41,6 +41,7 @@ def test_a_newer_message_cancels_the_hold(mixer):
     assert mixer.emotion.target == EmotionState.of(fear=0.5)
 
 
+@pytest.mark.untraced
 @given(st.integers(1, 60))
 def test_frame_rate_does_not_change_the_motion(frames):
     fine, coarse = Mixer(default_inference()), Mixer(default_inference())

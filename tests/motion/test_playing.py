@@ -112,6 +112,7 @@ DEEDS = st.lists(
 )
 
 
+@pytest.mark.untraced
 @given(DEEDS)
 def test_nothing_jumps_wherever_it_is_begun_replaced_or_stopped(deeds):
     mixer, dt = Mixer(default_inference()), 0.01

@@ -27,6 +27,7 @@ def only(**values):
 
 
 @pytest.mark.slow
+@pytest.mark.untraced
 @pytest.mark.parametrize("face", FACES)
 @pytest.mark.parametrize(("kind", "most", "worst"), [("uniform", 1.5, 5.0), ("natural", 0.5, 1.5)])
 def test_a_round_trip_brings_every_fap_back(face, kind, most, worst):

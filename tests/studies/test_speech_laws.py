@@ -46,6 +46,7 @@ def test_these_few_sentences_have_all_that_the_laws_speak_of():
 
 
 @pytest.mark.slow
+@pytest.mark.untraced
 @pytest.mark.parametrize("face", face_names())
 @pytest.mark.parametrize("state", STATES[:7], ids=lambda state: "+".join(state) or "neutral")
 def test_the_laws_hold_under_every_emotion(face, state):
@@ -56,6 +57,7 @@ def test_the_laws_hold_under_every_emotion(face, state):
 
 
 @pytest.mark.slow
+@pytest.mark.untraced
 @pytest.mark.parametrize("face", face_names())
 @pytest.mark.parametrize(("rate", "loudness"), HURRIED)
 def test_they_hold_for_the_quick_and_the_slow_the_loud_and_the_low(face, rate, loudness):
@@ -86,6 +88,7 @@ def test_a_mouth_that_does_not_close_breaks_them(monkeypatch):
 
 
 @pytest.mark.slow
+@pytest.mark.untraced
 @pytest.mark.parametrize("face", face_names())
 def test_tissue_reaches_the_closures(face):
     model = load_model(face)

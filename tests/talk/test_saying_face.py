@@ -138,6 +138,7 @@ ASKED = st.one_of(
 )
 
 
+@pytest.mark.untraced
 @settings(deadline=None, max_examples=40)
 @given(plan=st.lists(ASKED, max_size=12))
 def test_whatever_it_is_told_in_the_end_it_is_silent_and_as_before(plan):

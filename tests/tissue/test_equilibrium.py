@@ -33,6 +33,7 @@ def found(tissue: TissueTables, emotions: dict[str, Doubles]) -> dict[str, Float
     return {name: equilibrium(tissue, contractions) for name, contractions in emotions.items()}
 
 
+@pytest.mark.untraced
 def test_all_six_are_the_same_from_rest_and_from_each_other(
     tissue: TissueTables, emotions: dict[str, Doubles], found: dict[str, Floats]
 ) -> None:
@@ -63,12 +64,23 @@ def test_symmetric_loads_have_symmetric_equilibria(
 
 
 @pytest.mark.slow
-def test_newtons_method_finds_the_same(
+def test_newtons_method_stays_where_it_is(
     tissue: TissueTables, emotions: dict[str, Doubles], found: dict[str, Floats]
 ) -> None:
-    pull = np.tensordot(emotions["disgust"], tissue.forces, 1)
-    exact = newton(tissue.lattice, pull)
-    assert np.linalg.norm(exact - unpacked(tissue.columns, found["disgust"]), axis=2).max() < 0.01
+    check_newton(tissue, emotions["disgust"], found["disgust"], start=unpacked(tissue.columns, found["disgust"]))
+
+
+@pytest.mark.soak
+def test_newtons_method_finds_the_same_from_rest(
+    tissue: TissueTables, emotions: dict[str, Doubles], found: dict[str, Floats]
+) -> None:
+    for name, contractions in emotions.items():
+        check_newton(tissue, contractions, found[name], start=None)
+
+
+def check_newton(tissue: TissueTables, contractions: Doubles, there: Floats, start: Doubles | None) -> None:
+    exact = newton(tissue.lattice, np.tensordot(contractions, tissue.forces, 1), start)
+    assert np.linalg.norm(exact - unpacked(tissue.columns, there), axis=2).max() < 0.01
 
 
 def test_no_contraction_is_rest_itself(tissue: TissueTables) -> None:
@@ -95,11 +107,13 @@ def test_energy_does_not_grow_without_forces(tissue: TissueTables) -> None:
 
 
 @pytest.mark.slow
-def test_a_thousand_random_contractions_invert_nothing(tissue: TissueTables) -> None:
+@pytest.mark.untraced
+@pytest.mark.parametrize("count", [100, pytest.param(1000, marks=pytest.mark.soak)])
+def test_random_contractions_invert_nothing(tissue: TissueTables, count: int) -> None:
     lattice, rng = tissue.lattice, np.random.default_rng(8)
     triangles = lattice.prisms.corners[:, :3]
     upright = doubled_areas(lattice.rest[EPIDERMIS], triangles)
-    for turn in range(1000):
+    for turn in range(count):
         part = rng.random(23) * (rng.random(23) < rng.random())
         positions = tissue.columns.rest.copy()
         guess = tissue.responses.powers(part) @ tissue.responses.columns

@@ -15,6 +15,7 @@ from click.testing import CliRunner
 
 from agentface import resources
 from agentface.cli import cli
+from agentface.view.gl import context, source
 from agentface.view.renderer import Renderer
 
 SERVE = ("serve", "--osc", "127.0.0.1:0", "--duration", "0.3", "--fps", "10", "--record")
@@ -160,12 +161,9 @@ def test_a_disk_full_from_the_start(folder):
 @pytest.fixture
 def shaders(tmp_path, monkeypatch):
     """A copy of the shaders, to be broken."""
-    data = tmp_path / "package" / "_data"
-    data.mkdir(parents=True)
-    for name in ("regions", "rules"):
-        (data / name).symlink_to(resources.data_folder(name))
-    copied = shutil.copytree(resources.data_folder("shaders"), data / "shaders")
-    monkeypatch.setattr(resources, "_PACKAGE", data.parent)
+    copied = shutil.copytree(resources.data_folder("shaders"), tmp_path / "shaders")
+    for module in (source, context):
+        monkeypatch.setattr(module, "data_folder", {"shaders": copied}.__getitem__)
     return copied
 
 

@@ -48,6 +48,7 @@ def test_expressions_look_as_they_did(goldens, name, quality):
 
 
 @pytest.mark.slow
+@pytest.mark.untraced
 @pytest.mark.gl
 @pytest.mark.parametrize("name", face_names())
 def test_expressions_of_tissue_look_as_they_did(goldens, name):

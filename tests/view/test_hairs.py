@@ -39,6 +39,7 @@ def turned(angles):
 
 
 @pytest.mark.slow
+@pytest.mark.untraced
 @settings(max_examples=20)
 @given(st.tuples(*[st.floats(-3, 3)] * 3), st.tuples(*[st.floats(-1, 1)] * 3), st.floats(0, 1))
 def test_hairs_move_rigidly_with_a_rigid_skin(angles, shift, t):
@@ -131,6 +132,7 @@ def test_hair_covers_the_crown_and_leaves_the_face_and_ears_free(grown):
 
 
 @pytest.mark.slow
+@pytest.mark.untraced
 @pytest.mark.parametrize("quality", ["fast", "portrait"])
 @pytest.mark.parametrize("style", ["cropped", "swept", "bob", "bun"])
 def test_strands_grow_on_the_scalp_and_stay_out_of_head_and_face(grown, style, quality):

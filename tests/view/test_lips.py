@@ -54,6 +54,7 @@ def test_the_mesh_is_as_closed_as_the_skins(model, per_cell):
 
 
 @pytest.mark.slow
+@pytest.mark.untraced
 def test_fine_lips_pass_through_the_vertices_and_stay_near_the_mesh(model):
     lips = FineLips(model, 4)
     for vertices in (model.vertices, puckered(model)):
@@ -67,6 +68,7 @@ def test_fine_lips_pass_through_the_vertices_and_stay_near_the_mesh(model):
 
 
 @pytest.mark.slow
+@pytest.mark.untraced
 def test_fine_lips_are_smoother_than_the_mesh(model):
     """Between neighbouring triangles of the puckered lips the largest angles get smaller, and none turns over."""
     lips, vertices = FineLips(model, 4), puckered(model)

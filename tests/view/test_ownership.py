@@ -62,6 +62,7 @@ def mb(): return int(open("/proc/self/statm").read().split()[1]) * 4096 / 1e6
 
 
 @pytest.mark.slow
+@pytest.mark.untraced
 @pytest.mark.parametrize("faces", FACES)
 @pytest.mark.parametrize("ending", ["del face", "face.close()"])
 def test_faces_made_drawn_and_dropped_leave_no_memory_behind(ending, faces):
@@ -82,6 +83,7 @@ def test_faces_made_drawn_and_dropped_leave_no_memory_behind(ending, faces):
 
 
 @pytest.mark.slow
+@pytest.mark.untraced
 @pytest.mark.parametrize("sizes", SIZES)
 @pytest.mark.parametrize(("quality", "size"), [("fast", (1280, 720)), ("portrait", (400, 300))])
 def test_pictures_of_many_sizes_leave_no_memory_behind(quality, size, sizes):

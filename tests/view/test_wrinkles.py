@@ -125,6 +125,7 @@ def test_a_slope_towards_the_key_light_is_brighter(renderer):
 
 
 @pytest.mark.slow
+@pytest.mark.untraced
 @pytest.mark.parametrize("quality", ["fast", "portrait"])
 @pytest.mark.parametrize("name", ["forehead_medial", "nose_side", "crows_feet"])
 def test_a_picture_changes_where_the_train_is_and_nowhere_else(renderer, name, quality):

@@ -50,7 +50,7 @@ def test_sliders_undo_and_help(on_a_display):
             yield from key("Escape")
             seen["closed"] = controls.helping, controls.closing
 
-        show(size=(560, 900))
+        show(Face(), size=(560, 900))
     """)
     neutral = dict.fromkeys(seen["dragged"], 0.0)
     assert 0.6 < seen["dragged"]["happiness"] < 1.0
@@ -119,7 +119,7 @@ def test_muscles_and_rules(on_a_display):
             bar(fraction, *rest)
 
         imgui.small_button, imgui.progress_bar = noted_button, noted_bar
-        show(size=(560, 900))
+        show(Face(), size=(560, 900))
     """)
     assert seen["both"].keys() == {"procerus_l", "procerus_r"}
     assert seen["both"]["procerus_l"] == seen["both"]["procerus_r"] > 0.4

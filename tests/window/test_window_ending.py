@@ -12,7 +12,7 @@ import pytest
 from tests.display import on_a_virtual_display
 from tests.tools import require
 
-pytestmark = [pytest.mark.gl, pytest.mark.slow]
+pytestmark = [pytest.mark.gl, pytest.mark.slow, pytest.mark.untraced]
 
 FILMING = """
 "$0" -m agentface $COMMAND &

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-pytestmark = [pytest.mark.gl, pytest.mark.slow]
+pytestmark = [pytest.mark.gl, pytest.mark.slow, pytest.mark.untraced]
 
 
 @pytest.mark.parametrize("resizes", [40, pytest.param(200, marks=pytest.mark.soak)])

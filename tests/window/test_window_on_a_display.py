@@ -97,7 +97,7 @@ def test_keys_mouse_and_size(on_a_display):
             found = subprocess.run(["xdotool", "search", "--name", "for help"], capture_output=True, text=True)
             return found.stdout.split()[:1]
 
-        show(size=(560, 420))
+        show(Face(), size=(560, 420))
     """)
     assert seen["raised"] == dict.fromkeys(seen["raised"], 0.0) | {"surprise": 1.0}
     assert seen["changed"] > 1.0

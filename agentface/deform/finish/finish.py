@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from agentface.conventions import Floats
+from agentface.conventions import Floats, read_only
 from agentface.deform.finish import order
 from agentface.deform.finish.order import FinishStage
 from agentface.deform.geometry import FaceGeometry
@@ -27,4 +27,5 @@ class Finish:
 
     def apply(self, values: Floats, geometry: FaceGeometry) -> None:
         """Finish one face in place, at the pose ``values (COUNT,)``: its ``vertices`` are the deformed skin."""
-        self._finish(FinishStage.SMOOTH_NORMALS, FinishStage.NECK, self._tables, values, geometry.arrays())
+        first, last = int(FinishStage.SMOOTH_NORMALS), int(FinishStage.NECK)
+        self._finish(first, last, self._tables, read_only(values), geometry.arrays())

@@ -92,10 +92,10 @@ def prepare(tables: TissueTables, contractions: Doubles) -> Expression:
     acting = np.tensordot(contractions, tables.forces, 1)
     moved = unpacked(tables.columns, equilibrium(tables, contractions)) - lattice.rest
     sets = node_sets(lattice, acting, moved)
-    levels = sets.distance[sets.quasi_static]
+    levels, rings = sets.distance[sets.quasi_static], rings_of(lattice)
     groups = [sets.dynamic]
     for level in np.unique(levels).tolist():
-        groups += coloured(lattice, tables.mirror, sets.quasi_static[levels == level])
+        groups += coloured(lattice, tables.mirror, sets.quasi_static[levels == level], rings)
     columns = pack(lattice, groups)
     return Expression(sets, columns, int(columns.colours[1]), new_loads(columns, tables.forces))
 

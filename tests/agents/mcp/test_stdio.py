@@ -32,6 +32,7 @@ HELLO = {
 
 
 @pytest.mark.slow
+@pytest.mark.untraced
 def test_a_client_starts_it_moves_the_face_and_ends_it():
     async def run():
         parameters = StdioServerParameters(command=COMMAND[0], args=COMMAND[1:], env=ENVIRONMENT)
@@ -66,6 +67,7 @@ def answers(child, count):
 
 
 @pytest.mark.slow
+@pytest.mark.untraced
 def test_nothing_but_the_protocol_is_on_its_output_and_it_ends_with_its_input(child):
     ask = {"jsonrpc": "2.0", "id": 2, "method": "tools/call", "params": {"name": "status", "arguments": {}}}
     send(child, HELLO, {"jsonrpc": "2.0", "method": "notifications/initialized"}, "no json at all", "", ask)
@@ -80,6 +82,7 @@ def test_nothing_but_the_protocol_is_on_its_output_and_it_ends_with_its_input(ch
 
 
 @pytest.mark.slow
+@pytest.mark.untraced
 def test_it_ends_when_it_is_told_to_though_its_input_goes_on(child):
     send(child, HELLO)
     assert answers(child, 1)[0]["id"] == 1

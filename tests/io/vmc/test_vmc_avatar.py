@@ -17,9 +17,9 @@ from agentface import Face
 from agentface.cli import cli
 from agentface.io.vmc.sender import VmcSender
 from agentface.live.loop import Frame
-from tests.browser import address, viewer
+from tests.browser import address, places, viewer
 
-pytestmark = [pytest.mark.slow, pytest.mark.gl]
+pytestmark = [pytest.mark.slow, pytest.mark.gl, pytest.mark.untraced]
 BONES = ("head", "leftEye", "rightEye")
 CAMERA = [0.0, 1.53, 1.15], [0.0, 1.5, 0.0]
 
@@ -49,7 +49,7 @@ class Bridge:
 
     def skin(self):
         """The places of the skin's vertices in mm."""
-        return 1e3 * np.array(self.page.evaluate("places('skin')")).reshape(-1, 3)
+        return 1e3 * places(self.page, "skin")
 
     def clear(self):
         self.face.neutral(0.0)

@@ -18,7 +18,7 @@ from tests.heads import head_model
 from tests.tools import require
 from tests.waiting import until
 
-pytestmark = pytest.mark.slow
+pytestmark = [pytest.mark.slow, pytest.mark.untraced]
 
 
 @pytest.mark.parametrize("names", NAMES)

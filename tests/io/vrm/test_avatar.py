@@ -21,7 +21,7 @@ from agentface.io.vrm.expressions import ExpressionBaker
 from agentface.io.vrm.licence import meta_of
 from agentface.io.vrm.skeleton import bones_of
 from agentface.parameters import FacePose
-from tests.browser import address, viewer
+from tests.browser import address, places, viewer
 from tests.gltf_validator import issues
 
 REQUIRED = {
@@ -78,10 +78,6 @@ def page(file):
 def origin(model):
     """Where the model's origin stands in an avatar: bones are over the ground."""
     return bones_of(model)["leftEye"][1] - model.eye_centre("l")
-
-
-def places(page: Any, name: str) -> np.ndarray:
-    return np.array(page.evaluate("name => places(name)", name)).reshape(-1, 3)
 
 
 def off_mm(first: np.ndarray, second: np.ndarray) -> float:

@@ -100,6 +100,7 @@ def scripted(hz, seed=1):
     return np.array(poses)
 
 
+@pytest.mark.untraced
 def test_30_60_and_144_frames_a_second_show_the_same():
     slow = scripted(30)
     assert np.ptp(slow, axis=0)[head_places()].min() > 0.01
@@ -107,6 +108,7 @@ def test_30_60_and_144_frames_a_second_show_the_same():
         assert np.abs(scripted(hz) - slow).max() < 1e-3
 
 
+@pytest.mark.untraced
 def test_frames_of_any_length_show_the_same():
     even, uneven = channels(seed=9, state="speaking"), channels(seed=9, state="speaking")
     draw = np.random.default_rng(0)
@@ -128,6 +130,7 @@ def test_the_same_seed_lives_the_same_life_and_another_one_another():
         np.testing.assert_array_equal(face.step(0.21).vertices, twin.step(0.21).vertices)
 
 
+@pytest.mark.untraced
 @pytest.mark.parametrize("seed", range(4))
 def test_the_sides_of_a_pair_are_never_in_exact_step_and_never_far_apart(seed):
     mixer = channels(seed=seed)
@@ -152,6 +155,7 @@ def shown_smile(liveliness, seed=4):
     return [poses[:, parameter(f"zygomaticus_major_{side}").index] for side in "lr"]
 
 
+@pytest.mark.untraced
 @pytest.mark.parametrize("seed", range(3))
 def test_one_side_of_a_smile_is_late_by_up_to_30_ms_where_the_face_lives(seed):
     sides = shown_smile(0.6, seed)
@@ -209,6 +213,7 @@ def test_a_jump_is_seen_as_one():
     assert jumps(np.abs(times - 0.5), 2000).max() == pytest.approx(2.0, rel=0.05)
 
 
+@pytest.mark.untraced
 @settings(max_examples=25)
 @given(st.lists(st.tuples(DEEDS, st.floats(0.01, 0.5)), min_size=1, max_size=6), st.integers(0, 99))
 def test_no_speed_jumps_whatever_interrupts_what(script, seed):

@@ -13,6 +13,8 @@ from agentface.motion.figures import STATES, default_life
 from agentface.parameters import HIGH, LOW, NAMES, parameter
 from tests.motion.living import channels, trace
 
+pytestmark = pytest.mark.untraced
+
 HZ = 200
 FIVE_MINUTES, HOUR = 300.0, 3600.0
 TABLE = default_life()

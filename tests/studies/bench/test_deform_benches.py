@@ -75,6 +75,7 @@ def rig_frames(falloff):
     return face, papers.Frames(face)
 
 
+@pytest.mark.untraced
 @settings(max_examples=15)
 @given(st.lists(st.floats(0, 1), min_size=38, max_size=38), st.sampled_from(["smooth", "waters"]))
 def test_all_ways_compute_what_the_oracle_does(levels, falloff):

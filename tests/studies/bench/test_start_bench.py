@@ -2,7 +2,7 @@ import pytest
 
 from agentface.studies.bench import start
 
-pytestmark = [pytest.mark.gl, pytest.mark.slow]
+pytestmark = [pytest.mark.gl, pytest.mark.slow, pytest.mark.untraced]
 
 
 def test_starts_are_measured_beside_the_imports():

@@ -38,6 +38,7 @@ def test_every_face_agrees_with_its_artists(face):
 
 
 @pytest.mark.slow
+@pytest.mark.untraced
 @pytest.mark.parametrize("face", face_names())
 def test_the_tissue_of_every_face_agrees_with_its_artists(face):
     model, units = head_model(face), load_action_units()

@@ -106,6 +106,7 @@ def test_the_rows_of_the_fit_are_the_muscles_of_the_file(fit, model, anatomy):
 
 
 @pytest.mark.slow
+@pytest.mark.untraced
 def test_the_fit_is_the_same_for_the_same_seed(model, anatomy):
     fitter = Fitter(model, anatomy, groups([UNIT])[0])
     one, two = (fitter.solve(2, np.random.default_rng(4), lambda _: None) for _ in range(2))

@@ -7,7 +7,7 @@ import pytest
 
 from agentface.io.web.layout import Field, Layout
 
-pytestmark = pytest.mark.slow
+pytestmark = [pytest.mark.slow, pytest.mark.untraced]
 
 LAYOUT = Layout([
     Field("frame", "u32"),

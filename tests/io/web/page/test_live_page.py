@@ -14,7 +14,7 @@ from tests.io.web.page.served import serving
 from tests.tools import require
 from tests.waiting import until
 
-pytestmark = pytest.mark.slow
+pytestmark = [pytest.mark.slow, pytest.mark.untraced]
 
 EXAMPLES = Path(__file__).parents[4] / "examples"
 

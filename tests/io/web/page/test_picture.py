@@ -20,7 +20,7 @@ from agentface.view.renderer import Renderer
 from tests.io.web.page.conftest import SIZE, opened
 from tests.io.web.page.files import Files, exact_frame, no_basis, settled
 
-pytestmark = [pytest.mark.slow, pytest.mark.gl]
+pytestmark = [pytest.mark.slow, pytest.mark.gl, pytest.mark.untraced]
 
 STAGE = "<!doctype html><title>stages</title>"
 DRAW = """

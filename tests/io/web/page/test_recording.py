@@ -26,7 +26,7 @@ from tests.io.web.page.files import settled
 from tests.io.web.page.served import rough_basis
 from tests.tools import require_page
 
-pytestmark = pytest.mark.slow
+pytestmark = [pytest.mark.slow, pytest.mark.untraced]
 
 EXAMPLES = Path(__file__).parents[4] / "examples"
 ELEMENT = "document.querySelector('agent-face')"

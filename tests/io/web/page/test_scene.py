@@ -12,7 +12,7 @@ from PIL import Image
 from tests.io.web.page.files import exact_frame, settled
 from tests.tools import PAGE
 
-pytestmark = pytest.mark.slow
+pytestmark = [pytest.mark.slow, pytest.mark.untraced]
 
 SCENE = """<!doctype html><title>scene</title>
 <script type="importmap">{ "imports": { "three": "./three.module.js" } }</script>
