@@ -28,10 +28,13 @@ def patient_voices():
 
 @pytest.hookimpl(wrapper=True)
 def pytest_runtest_protocol(item):
-    """Coverage, under which a test takes half as long again, does not watch those marked ``untraced``."""
+    """Coverage, under which a test takes half as long again, does not watch those marked ``untraced``.
+
+    Nor those of hypothesis: what has examples of its own is run through by some that are written down, too.
+    """
     coverage = sys.modules.get("coverage")
     measured = coverage and coverage.Coverage.current()
-    if not measured or not item.get_closest_marker("untraced"):
+    if not measured or not any(map(item.get_closest_marker, ("untraced", "hypothesis"))):
         return (yield)
     children = os.environ.pop(_TRACED_IN_CHILDREN, None)
     measured.stop()

@@ -406,10 +406,10 @@ def long_vowel():
 
 def test_who_comes_later_hears_what_is_left(server, long_vowel):
     stage = next(iter(server._stages.values()))
-    with page(server) as (line, _):
+    with page(server, close_timeout=0.1) as (line, _):  # with a minute of sound that nobody reads
         server._inbox.ask(lambda: stage.face.talker.perform(long_vowel)).result(TIMEOUT_S)
         first = heard(line).start_s
-    with page(server) as (late, _):
+    with page(server, close_timeout=0.1) as (late, _):
         parts = (heard(late).start_s - first) / 0.25
         assert parts == pytest.approx(round(parts), abs=1e-6)
         assert parts >= 0.0
