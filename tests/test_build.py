@@ -9,7 +9,7 @@ from click.testing import CliRunner
 
 from agentface.cli import cli
 from agentface.commands.build import _borrowed
-from agentface.head.build import face_files, head_topology, source
+from agentface.head.build import head_topology, source
 from agentface.head.model import load_model
 from agentface.resources import face_folder
 from agentface.tissue.reading import anatomy_file
@@ -33,26 +33,15 @@ def recipe(tmp_path, monkeypatch):
 
 
 @pytest.fixture
-def once(monkeypatch):
-    """Whoever builds shares the mesh that is cut, and what is made of the same recipe under the same name is the same.
-
-    So it is: ``tests/head/test_face_files.py`` and ``tests/test_wheel.py`` make faces again, byte for byte.
-    """
-    made, make = {}, face_files.face_files
-
-    def remembered(name, recipe, text, mesh):
-        if (name, text) not in made:
-            made[name, text] = make(name, recipe, text, mesh)
-        return dict(made[name, text])
-
+def one_mesh(monkeypatch):
+    """Whoever builds shares the mesh that is cut."""
     monkeypatch.setattr(source, "BaseMesh", lambda data: topology().mesh)
     monkeypatch.setattr(head_topology, "HeadTopology", lambda mesh: topology())
-    monkeypatch.setattr(face_files, "face_files", remembered)
 
 
 @pytest.mark.slow
-@pytest.mark.usefixtures("once")
-def test_a_recipe_becomes_a_face_that_its_name_finds(recipe, tmp_path, monkeypatch):
+@pytest.mark.usefixtures("one_mesh")
+def test_a_recipe_becomes_a_face_that_its_name_finds(recipe, tmp_path):
     said = call("build", recipe, "--face", "onyx")
     folder = tmp_path / "data" / "regions" / "sam"
     assert f"{folder}: written; agentface show --face sam" in said.stdout
@@ -68,7 +57,6 @@ def test_a_recipe_becomes_a_face_that_its_name_finds(recipe, tmp_path, monkeypat
 
     (folder / "muscles.yaml").write_text((face_folder("amber") / "muscles.yaml").read_text())
     glb = (folder / "head.glb").read_bytes()
-    monkeypatch.setattr("agentface.commands.build._check", lambda *_: None)  # the same files as before
     call("build", folder / "recipe.yaml", "-o", folder)
     assert (folder / "head.glb").read_bytes() == glb
     assert (folder / "muscles.yaml").read_bytes() == (face_folder("amber") / "muscles.yaml").read_bytes(), "kept"
@@ -99,7 +87,7 @@ def test_a_name_that_is_taken_is_refused(tmp_path):
 
 
 @pytest.mark.slow
-@pytest.mark.usefixtures("once")
+@pytest.mark.usefixtures("one_mesh")
 def test_a_wrong_recipe_changes_nothing(recipe, tmp_path):
     recipe.write_text(recipe.read_text().replace("female:", "femal:"))
     said = call("build", recipe, code=1).stderr

@@ -66,19 +66,18 @@ class FaceGlb:
         self._rest = FaceGeometry.at_rest(model)
         self._shapes: tuple[Shapes, Doubles] | None = None
 
-    def bake(self, told: Callable[[float], object] = lambda _: None) -> None:
-        """Bake ARKit's shapes, which :meth:`with_arkit` needs; ``told`` gets the number that are done."""
+    def bake(self, told: Callable[[float], object] = lambda _: None) -> tuple[Shapes, Doubles]:
+        """ARKit's shapes and their rows, which :meth:`with_arkit` needs, baked once; ``told`` gets how many are."""
         if self._shapes is None:
             self._shapes = bake_arkit(self.model, self._deformer, self.surface, told)
+        return self._shapes
 
     def with_arkit(self, played: Played | None = None) -> GlbFace:
         """The face with ARKit's shapes, and with what ``played`` plays as nearly as these show it.
 
         Raises GraphicsError when there is no OpenGL.
         """
-        self.bake()
-        assert self._shapes is not None, "baked above"  # noqa: S101 - for the type checker
-        shapes, rows = self._shapes
+        shapes, rows = self.bake()
         if played is None:
             return self._file(_Shaped(ARKIT_SHAPES, shapes, None, {}), None)
         fitting = ShapeWeights(rows)

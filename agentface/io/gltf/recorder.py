@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Protocol
+from typing import NamedTuple, Protocol
 
 import numpy as np
 
@@ -19,6 +19,13 @@ class RowTaker(Protocol):
 
     def add(self, row: Doubles) -> None:
         """Take ``(3 N,)`` m."""
+
+
+class _Stand(NamedTuple):
+    head: Floats
+    eyes: Floats
+    thrusts: Floats
+    shoulders: Floats
 
 
 class SurfaceRecorder:
@@ -37,15 +44,15 @@ class SurfaceRecorder:
         self._model, self._surface, self._taker = model, surface, taker
         self.told: Callable[[float], object] = lambda _: None
         self._times: list[float] = []
-        self._stands: list[tuple[Floats, ...]] = []
+        self._stands: list[_Stand] = []
 
     def show(self, frame: Frame) -> None:
         """Take one frame."""
         geometry = frame.geometry
         self._taker.add(self._surface.row(released(self._model, geometry)))
         self._times.append(frame.time_s)
-        stands = geometry.head[:3, :3], geometry.eye_rotations, geometry.eye_thrust, geometry.shoulders
-        self._stands.append(tuple(array.copy() for array in stands))
+        stand = geometry.head[:3, :3], geometry.eye_rotations, geometry.eye_thrust, geometry.shoulders
+        self._stands.append(_Stand(*(array.copy() for array in stand)))
         self.told(frame.time_s)
 
     def __len__(self) -> int:
@@ -59,19 +66,19 @@ class SurfaceRecorder:
     @property
     def heads(self) -> Floats:
         """``(T, 3, 3)``."""
-        return np.stack([head for head, *_ in self._stands])
+        return np.stack([stand.head for stand in self._stands])
 
     @property
     def eyes(self) -> Floats:
         """``(T, 2, 3, 3)``."""
-        return np.stack([eyes for _, eyes, *_ in self._stands])
+        return np.stack([stand.eyes for stand in self._stands])
 
     @property
     def thrusts(self) -> Floats:
         """``(T, 2)`` m."""
-        return np.stack([thrust for *_, thrust, _ in self._stands])
+        return np.stack([stand.thrusts for stand in self._stands])
 
     @property
     def shoulders(self) -> Floats:
         """``(T, 4, 4)``."""
-        return np.stack([shoulders for *_, shoulders in self._stands])
+        return np.stack([stand.shoulders for stand in self._stands])

@@ -23,6 +23,7 @@ PROTOCOL = 1
 Measure = Callable[[Face, str, Callable[[str], object]], Basis]
 """Finds the basis of a face and the name of its deformer; tells what takes long."""
 Watch = AbstractContextManager[Callable[[float], object]]
+"""Entered while something takes long; what it gives is told how much is done, 0..1."""
 HeadEncoder = Callable[[HeadModel, str | None, Basis], bytes]
 """Makes the file of a head, in a look of its own, with a basis."""
 
@@ -114,7 +115,7 @@ def basis_of(
 ) -> Basis:
     """The basis of a face, made once on a machine; ``told`` is told when that takes a while.
 
-    What ``watched`` gives for a name is entered meanwhile, and told how much is done, 0..1.
+    So is, in shares of it, what ``watched`` gives for the name of the work.
     """
     samples = SAMPLES if hasattr(face.deformer, "worker") else FEW_SAMPLES
 
