@@ -34,7 +34,7 @@ void main() {
     float flesh = smoothstep(0.30, 0.17, nasal + 0.9 * abs(q.y + 0.10));   // the caruncle
     white = mix(white, CARUNCLE, flesh);
     // the lids keep light off, most the upper one with its lashes; the globe turns away to the corners
-    float shade = mix(0.10, 1.0, smoothstep(-0.04, 0.50, over)) * mix(0.45, 1.0, smoothstep(-0.05, 0.26, under));
+    float shade = mix(0.08, 1.0, smoothstep(-0.04, 0.60, over)) * mix(0.45, 1.0, smoothstep(-0.05, 0.26, under));
     shade *= mix(0.30, 1.0, max(smoothstep(-0.05, 0.42, from_corner), 0.55 * flesh));
     vec3 ns = normalize(mix(n, mat3(head)[2], 0.25));
     n = normalize(n + flesh * (mat3(head) * vec3(0.9 * sign(q.x) * (0.12 - nasal) * 6.0, -5.0 * (q.y + 0.10), 0.0)));

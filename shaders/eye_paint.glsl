@@ -27,6 +27,6 @@ vec3 iris_colour(vec2 at) {
 vec3 white_colour(vec2 local) {
     float side = length(local);
     float veins = smoothstep(0.60, 0.72, noise(vec3(local * vec2(0.35, 1.4), 0.3)).g) * smoothstep(0.50, 0.85, side);
-    vec3 white = mix(sclera, sclera * vec3(0.93, 0.66, 0.59), 0.6 * smoothstep(0.45, 0.95, side) + 0.18 * veins);
+    vec3 white = mix(sclera, sclera * vec3(0.93, 0.66, 0.59), 0.6 * smoothstep(0.45, 0.95, side) + 0.5 * veins);
     return white * (1.0 - 0.35 * smoothstep(iris_radius + 0.10, iris_radius, side));
 }

@@ -36,8 +36,8 @@ void main() {
 #endif
     float lip = smoothstep(0.30, 0.75, material.x), mouth = smoothstep(0.35, 0.9, material.y), wet = smoothstep(0.2, 0.95, material.z);
     float moist = max(mouth, wet), sky = sky_light(ambient, lip, mouth, wet, own_place), shown = sheen(ambient, mouth, complexion.w, max(0.5 * lip, wet));
-    float mottle = textureLod(noise_volume, rest * 9.0, 0.0).r - 0.5;
-    vec3 albedo = mix(complexion_colour(complexion, mouth, wet, 0.5) * (1.0 + 0.19 * mottle), lip_colour(), 0.86 * lip * (1.0 - mouth));
+    vec4 coarse = textureLod(noise_volume, rest * 9.0, 0.0);
+    vec3 albedo = mix(complexion_colour(complexion, mouth, wet, mix(0.5, coarse.g, 0.6)) * (0.905 + 0.19 * coarse.r), lip_colour(), 0.86 * lip * (1.0 - mouth));
 
     vec3 view = normalize(towards), wrap = WRAP * (1.0 - 0.6 * mouth), light = hemisphere(soft), occlusion = bled(sky), key = light_direction[0].xyz;
     float n_v = max(dot(n, view), 0.02), rough = roughness(complexion.z, lip, moist), f0 = mix(F0.x, F0.y, max(lip, wet));

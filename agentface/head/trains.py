@@ -16,6 +16,7 @@ from agentface.conventions import Doubles, Floats
 
 _WAVE = 5.0  # wrinkles' widths, along them, in which they wander once
 _CREASE = 0.16  # of a wrinkle's width, how far from its foot a crease is dark
+_WIDEST_CREASE = 1.5e-3  # m
 
 
 def parabolas(distance: Doubles, length: float, count: int, height: float) -> Doubles:
@@ -69,7 +70,7 @@ def relief(train: Train, points: Floats) -> tuple[Doubles, Doubles]:
     raised = parabolas(distance, train.length, train.count, train.height)
     width = train.length / train.count
     foot = np.clip(np.round(distance / width), 0, train.count)
-    near = np.exp(-(((distance - width * foot) / (_CREASE * width)) ** 2))
+    near = np.exp(-(((distance - width * foot) / min(_CREASE * width, _WIDEST_CREASE)) ** 2))
     steep = [max(0.0, 1.0 - 4.0 * end) for end in train.ends()]
     flattened = _flattened(train, distance)
     crease = np.where(foot == 0, steep[0], np.where(foot == train.count, steep[1], flattened)) * near

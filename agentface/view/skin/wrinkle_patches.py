@@ -22,10 +22,11 @@ STEEPEST = 2.0
 """The slope whose root is 1, as in ``shaders/wrinkles.glsl``."""
 _AZIMUTH = 1.35  # rad, to both sides of the middle: ATLAS_AZIMUTH of shaders/atlas.glsl
 _LOWEST = 2e-6  # m
+_UNDER_A_CREASE = 5e-5  # m: both banks of the crease at a train's foot belong to it
 _SOFTENINGS = 2  # of a relief, by a texel each
 _LOST, _LOST_OF_A_FOLD = 0.5, 0.17  # how much lower the lines of a row are here and there, and a single fold
 _PLACES = 16, 32  # texels high and wide: places where lines are deep or not
-_CREASE_SHADE = 0.5  # of the light that the bottom of a crease misses: CREASE_SHADE there
+_CREASE_SHADE = 0.85  # of the light that the bottom of a crease misses: of all channels of CREASE_SHADE there
 _GAMMA = 0.48  # from light to the picture, about
 _FAR_ROUND = 2.2  # rad; triangles beyond would cross the atlas where the azimuth jumps
 _FLIPPED = np.array([-1, 1, 1], np.float32)
@@ -131,6 +132,7 @@ def patches(model: HeadModel, height: tuple[float, float]) -> list[Patch]:
         near = np.flatnonzero(_touched(model, placed)[triangles])
         reach = (shares[near] * placed.reach[corners[near]]).sum(axis=1)
         raised = reach[:, None] * np.stack(relief(placed.train, points[near]), axis=1)
+        raised[:, 0] = np.maximum(raised[:, 0], _UNDER_A_CREASE * raised[:, 1])
         kept = raised[:, 0] > _LOWEST
         at = near[kept]
         spread.append(_patch(covered[at], raised[kept], np.hypot(points[at, 0], points[at, 2]), normals[at], height))
