@@ -14,6 +14,8 @@ _SIDE = 112
 _CLEARANCE = 0.0035
 _SOFTNESS = 0.0045
 _SLACK = 0.0050
+_STEEPEST = 3.0
+"""Slope of the skin as the light sees it up to which its own depths beside a vertex are no shadow on it."""
 
 
 class KeyShadow:
@@ -48,9 +50,13 @@ class KeyShadow:
         place = 0.5 * (lifted @ projection[:3, :3].T + projection[:3, 3]) + 0.5
         reach = _SOFTNESS * 0.5 * np.linalg.norm(projection[0, :3]) * _SIDE
         total = np.zeros(len(vertices))
+        axis = projection[2, :3] / np.linalg.norm(projection[2, :3])
+        facing = np.abs(normals @ axis)
+        slope = np.minimum(np.sqrt(np.maximum(1.0 - facing**2, 0.0)) / np.maximum(facing, 1e-3), _STEEPEST)
+        slack = _SLACK + 0.5 * np.linalg.norm(projection[2, :3]) * _SOFTNESS * slope
         steps = np.linspace(-reach, reach, 7)
         for right in steps:
             for up in steps:
                 columns, rows = (np.clip(place[:, :2] * _SIDE + [right, up], 0, _SIDE - 1)).astype(int).T
-                total += place[:, 2] - _SLACK <= depths[rows, columns]
+                total += place[:, 2] - slack <= depths[rows, columns]
         return (total[:, None] / len(steps) ** 2).astype(np.float32)
