@@ -31,7 +31,7 @@ void main() {
     vec4 raised = wrinkled_normal(n, rest_position, atlas);
     light *= wrinkle_shade(n, raised, light_direction[1].xyz);
     soft += 0.5 * dot(raised.xyz - n, key);
-    body *= 1.0 - 0.8 * CREASE_SHADE * raised.w;
+    body *= 1.0 - 0.8 * CREASED * raised.w;
     n = raised.xyz;
 #endif
     vec4 fine = texture(pores, rest_position * FINENESS * mix(vec3(1.0), LINED, lip));

@@ -5,12 +5,13 @@
 uniform sampler2D wrinkle_atlas;
 
 const float STEEPEST = 2.0;       // the slope whose root is 1
-const vec3 CREASE_SHADE = vec3(0.72, 0.88, 0.94);   // of the light that the bottom of a crease misses: red comes through the skin
+const float CREASE_SHADE = 0.85;   // of the light that the bottom of a crease misses
+const vec3 CREASED = CREASE_SHADE * vec3(0.85, 1.03, 1.10);   // red comes through the skin
 
 // What wrinkles make of light from l on skin with the normal n.
 vec3 wrinkle_shade(vec3 n, vec4 raised, vec3 l) {
     vec2 facing = max(vec2(dot(raised.xyz, l), dot(n, l)), -0.2) + 0.8;
-    return facing.x / facing.y * (1.0 - CREASE_SHADE * raised.w);
+    return facing.x / facing.y * (1.0 - CREASED * raised.w);
 }
 
 // The normal of the skin with its wrinkles: Mikkelsen's surface gradient (2010). w: the crease.
