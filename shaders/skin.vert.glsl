@@ -34,10 +34,11 @@ void main() {
 #ifdef WRINKLED
     atlas = atlas_place(rest);
 #endif
-    float lip = smoothstep(0.30, 0.75, material.x), mouth = smoothstep(0.35, 0.9, material.y), wet = smoothstep(0.2, 0.95, material.z);
+    float mottle = textureLod(noise_volume, rest * 9.0, 0.0).r - 0.5, lip = lip_share(material.x, mottle);
+    float mouth = smoothstep(0.35, 0.9, material.y), wet = smoothstep(0.2, 0.95, material.z);
     float moist = max(mouth, wet), sky = sky_light(ambient, lip, mouth, wet, own_place), shown = sheen(ambient, mouth, complexion.w, max(0.5 * lip, wet));
-    float mottle = textureLod(noise_volume, rest * 9.0, 0.0).r - 0.5;
-    vec3 albedo = mix(complexion_colour(complexion, mouth, wet, 0.5) * (1.0 + 0.19 * mottle), lip_colour(), 0.86 * lip * (1.0 - mouth));
+    vec3 albedo = complexion_colour(complexion, mouth, wet, 0.5) * (1.0 + 0.19 * mottle + lip_ridge(material.x));
+    albedo = mix(albedo, lip_colour(ambient), 0.86 * lip * (1.0 - mouth));
 
     vec3 view = normalize(towards), wrap = WRAP * (1.0 - 0.6 * mouth), light = hemisphere(soft), occlusion = bled(sky), key = light_direction[0].xyz;
     float n_v = max(dot(n, view), 0.02), rough = roughness(complexion.z, lip, moist), f0 = mix(F0.x, F0.y, max(lip, wet));
@@ -52,9 +53,9 @@ void main() {
     albedo = wear(albedo, gloss, moist);
     gloss = vec3(0.0);
 #endif
-    around = albedo * light * occlusion + gloss;
     soft_key = dot(soft, key);
     float lit = mix(1.0, key_light(position, n), smoothstep(-0.05, 0.30, soft_key));
+    around = albedo * (light * occlusion + lip_glow(lip * (1.0 - mouth), ambient, lit * clamp(2.0 * soft_key, 0.0, 1.0))) + gloss;
     lit = mix(lit, 0.5 * sky, mouth);   // inside, no more than of the sky
     key_body = albedo * light_colour[0].rgb * bled(lit) * mix(vec3(1.0), occlusion, 0.75);
     matter = vec4(lip, moist, rough, lit * shown);
