@@ -36,7 +36,7 @@ void main() {
 #endif
     float mottle = textureLod(noise_volume, rest * 9.0, 0.0).r - 0.5, lip = lip_share(material.x, mottle);
     float mouth = smoothstep(0.35, 0.9, material.y), wet = smoothstep(0.2, 0.95, material.z);
-    float moist = max(mouth, wet), sky = sky_light(ambient, lip, mouth, wet, own_place), shown = sheen(ambient, mouth, complexion.w, max(0.5 * lip, wet));
+    float moist = max(mouth, wet), outer = lip_outer(lip, material.y), sky = sky_light(ambient, outer, mouth, wet, own_place), shown = sheen(ambient, mouth, complexion.w, max(0.5 * lip, wet));
     vec3 albedo = complexion_colour(complexion, mouth, wet, 0.5) * (1.0 + 0.19 * mottle + lip_ridge(material.x));
     albedo = mix(albedo, lip_colour(ambient), 0.86 * lip * (1.0 - mouth));
 
@@ -55,7 +55,7 @@ void main() {
 #endif
     soft_key = dot(soft, key);
     float lit = mix(1.0, key_light(position, n), smoothstep(-0.05, 0.30, soft_key));
-    around = albedo * (light * occlusion + lip_glow(lip * (1.0 - mouth), ambient, lit * clamp(2.0 * soft_key, 0.0, 1.0))) + gloss;
+    around = albedo * (light * occlusion + mouth * mouth_round(mouth_depth(own_place)) * light_colour[0].rgb + lip_glow(outer * (1.0 - mouth), ambient, lit * clamp(2.0 * soft_key, 0.0, 1.0))) + gloss;
     lit = mix(lit, 0.5 * sky, mouth);   // inside, no more than of the sky
     key_body = albedo * light_colour[0].rgb * bled(lit) * mix(vec3(1.0), occlusion, 0.75);
     matter = vec4(lip, moist, rough, lit * shown);

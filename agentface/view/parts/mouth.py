@@ -16,7 +16,7 @@ from agentface.view.parts.rigid import RigidPart, rigid_mesh
 from agentface.view.parts.teeth import crown_places, evened_facing
 
 PARTS = "teeth_upper", "teeth_lower", "tongue"
-SHADED = 0.28  # of the light on the lower jaw, which the upper lip and the nose keep off
+SHADED = 0.22  # of the light on the lower jaw, which the upper lip and the nose keep off
 _PLACES = np.linspace(-0.6, 0.6, 7)  # where the gap is looked at: parts of half the mouth's width, to the left
 _PURSED = 0.1  # of the mouth's width at rest, by which it is narrower where it is all pursed
 _MIDDLE = len(_PLACES) // 2
