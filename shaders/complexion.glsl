@@ -8,6 +8,7 @@ const float HIDDEN = 0.875;   // of the skin, under dense hair
 const vec3 WRAP = vec3(0.27, 0.20, 0.16);  // how far light goes round the terminator, by channel
 const vec3 RIM_WRAP = vec3(0.1);
 const vec3 SCATTERED = vec3(0.55, 0.38, 0.28);  // how far light goes through the skin, by channel
+const float CHEEK_HIDES = 0.8;   // of the light from behind, what cheeks keep off the lips
 const vec3 INNER_LIP = vec3(0.78, 0.58, 0.60);
 const vec2 F0 = vec2(0.026, 0.036);  // of skin that is dry and moist
 
@@ -28,7 +29,7 @@ vec3 lip_colour(float ambient) {
 
 // The red goes over into the skin unevenly; mottle -0.5..0.5.
 float lip_share(float red, float mottle) {
-    return smoothstep(0.22, 0.88, red + 0.30 * mottle);
+    return smoothstep(0.20, 0.74, red + 0.28 * mottle);
 }
 
 // How much paler the skin is along the lips' border.

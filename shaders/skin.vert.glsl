@@ -46,7 +46,7 @@ void main() {
     for (int i = 1; i < LIGHTS; i++) {
         vec3 l = light_direction[i].xyz;
         light += light_colour[i].rgb * wrapped(scattered(n, soft, l), i == 1 ? wrap : RIM_WRAP);
-        gloss += light_colour[i].rgb * (unhidden(soft, l) * glint(n, l, view, n_v, 0.9 * rough, f0));
+        gloss += light_colour[i].rgb * (unhidden(soft, l) * (i == 1 ? 1.0 : 1.0 - CHEEK_HIDES * lip) * glint(n, l, view, n_v, 0.9 * rough, f0));
     }
     gloss *= 0.8 * shown;
 #ifdef TEXTURED

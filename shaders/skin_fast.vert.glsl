@@ -39,7 +39,7 @@ void main() {
     for (int i = 0; i < LIGHTS; i++) {
         vec3 l = light_direction[i].xyz, cosines = wrapped(scattered(n, soft, l), i < 2 ? wrap : RIM_WRAP);
         diffuse += light_colour[i].rgb * cosines * (i == 0 ? bled(lit) * mix(vec3(1.0), occlusion, 0.75) : occlusion);
-        gloss += light_colour[i].rgb * ((i == 0 ? lit : unhidden(soft, l)) * glint(n, l, view, n_v, 0.9 * rough, f0));
+        gloss += light_colour[i].rgb * ((i == 0 ? lit : unhidden(soft, l) * (i == 1 ? 1.0 : 1.0 - CHEEK_HIDES * lip)) * glint(n, l, view, n_v, 0.9 * rough, f0));
     }
     gloss += hemisphere(reflect(-view, n)) * fresnel(f0, n_v) * 0.5;
     float shown = sheen(ambient, mouth, complexion.w, max(0.5 * lip, wet));

@@ -51,7 +51,7 @@ _GLOSS = (
     _Spot(0.90, {"nasion": 0.5, "nose_tip": 0.5}, 0.0, (0.12, 0.50, 0.6)),
 )
 _CORNER = _Spot(1.0, {"mouth_corner_l": 1.0}, 0.0, (0.085, 0.075, 0.25))
-_CORNER_LIGHT, _CORNER_EVENED, _CORNER_FADE = 0.30, 0.95, 0.65
+_CORNER_LIGHT, _CORNER_EVENED, _CORNER_FADE = 0.38, 0.95, 0.65
 """How much light the pockets at the corners of the mouth get, how far it is the same all over them, and how much of the
 lips' red they lack."""
 _CREASE_SHADE = 0.65
