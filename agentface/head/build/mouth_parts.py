@@ -106,7 +106,7 @@ def _gum(arch: Doubles, edge: float, out: float) -> PartMesh:
     normal /= np.linalg.norm(normal, axis=1, keepdims=True)
     normal *= np.sign(normal[len(normal) // 2, 1])
     # it comes out of the crowns' sides first, so that its border runs in a bow over each of them
-    profile = ((0.0, 0.050), (0.022, 0.086), (0.042, 0.12), (0.036, 0.19), (-0.05, 0.19), (-0.05, 0.10))
+    profile = ((0.0, 0.050), (0.022, 0.086), (0.046, 0.12), (0.036, 0.19), (-0.05, 0.19), (-0.05, 0.10))
     rows = []
     # a smile bares the upper crowns whole; below the lower incisors the chin leaves little room
     short, bared = (1.0, 0.024) if out > 0 else (0.62, 0.0)
