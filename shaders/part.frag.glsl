@@ -47,7 +47,7 @@ void main() {
     float inside = smoothstep(-0.006, 0.0, reach.z);
     vec3 walls = WALLS * sky_part * inside * exp(-reach.z / 0.016);
     vec3 light = hemisphere(n) * sky_part + walls, gloss = vec3(0.0);
-    vec3 round_light = WALLS * light_colour[0].rgb * (matter.w * inside * (0.75 + 0.25 * n.y));
+    vec3 round_light = WALLS * light_colour[0].rgb * (matter.w * (1.0 + 0.7 * enamelled) * inside * (0.75 + 0.25 * n.y));
     float n_v = max(dot(n, view), 0.02);
     for (int i = 0; i < 2; i++) {
         vec3 l = light_direction[i].xyz, h = normalize(l + view);
