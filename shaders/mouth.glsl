@@ -6,7 +6,7 @@ uniform vec4 mouth_opening;  // heights of the upper and the lower lip's edge, h
 const float LIP_SHADES = 0.0042;   // metres from a lip's edge to where it shades teeth no more, if the mouth is open wide
 const vec3 LIP_GLOW = vec3(0.165, 0.082, 0.074);   // of the light on lips, what goes through them to where they shade themselves
 const float CHEEKS = 0.30;   // of the light on the teeth, what they send to the cheeks beside them
-const float ROUND = 0.20;    // of the key light on an open mouth, what goes round in it from wall to wall
+const float ROUND = 0.24;    // of the key light on an open mouth, what goes round in it from wall to wall
 const float ROUND_DEPTH = 0.040;   // metres, where about a third of that is left
 
 // How far behind the lips a place is.
@@ -57,5 +57,5 @@ float sky_light(float ambient, float lip, float mouth, float wet, vec3 at) {
 
 // What gets through and between lips of the key light where they keep it off themselves: less where they touch.
 vec3 lip_glow(float lip, float ambient, float lit) {
-    return lip * mix(smoothstep(-0.50, 0.70, ambient), 0.6, mouth_light) * (1.0 - lit) * LIP_GLOW * light_colour[0].rgb;
+    return lip * mix(smoothstep(-0.80, 0.70, ambient), 0.6, mouth_light) * (1.0 - lit) * LIP_GLOW * light_colour[0].rgb;
 }
