@@ -11,7 +11,7 @@ in vec4 material;
 centroid out vec3 position, normal, rest_position;
 centroid out vec4 matter;
 centroid out vec2 within;
-centroid out vec3 reach;
+centroid out vec4 reach;
 
 void main() {
     vec3 mean = 0.25 * (skin_position(anchors.x) + skin_position(anchors.y) + skin_position(anchors.z) + skin_position(anchors.w));
@@ -21,6 +21,6 @@ void main() {
     rest_position = rest;
     matter = material;
     within = vec2(0.0);
-    reach = vec3(0.32, 0.25, 0.0);
+    reach = vec4(0.32, 0.25, 0.0, 1.0);
     gl_Position = view_projection * placed;
 }

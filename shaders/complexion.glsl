@@ -8,6 +8,8 @@ const float HIDDEN = 0.875;   // of the skin, under dense hair
 const vec3 WRAP = vec3(0.27, 0.20, 0.16);  // how far light goes round the terminator, by channel
 const vec3 RIM_WRAP = vec3(0.1);
 const vec3 SCATTERED = vec3(0.55, 0.38, 0.28);  // how far light goes through the skin, by channel
+const float CHEEK_HIDES = 0.8;   // of the light from behind, what cheeks keep off the lips
+const vec3 INNER_LIP = vec3(0.78, 0.58, 0.60);
 const vec2 F0 = vec2(0.026, 0.036);  // of skin that is dry and moist
 
 // The skin's colour: tint is redness, eye socket, gloss, under the hair; blotches 0..1 is even at 0.5.
@@ -20,8 +22,19 @@ vec3 complexion_colour(vec4 tint, float mouth, float wet, float blotches) {
     return mix(c, hair_colour, HIDDEN * tint.w);
 }
 
-vec3 lip_colour() {
-    return mix(skin_tone * vec3(0.82, 0.50, 0.54), lip_tint, 0.35);
+// Lips are darker and redder to the inside, where at rest no light arrives.
+vec3 lip_colour(float ambient) {
+    return mix(skin_tone * vec3(0.81, 0.53, 0.56), lip_tint, 0.35) * mix(INNER_LIP, vec3(1.0), smoothstep(0.0, 1.0, ambient));
+}
+
+// The red goes over into the skin unevenly; mottle -0.5..0.5.
+float lip_share(float red, float mottle) {
+    return smoothstep(0.20, 0.74, red + 0.28 * mottle);
+}
+
+// How much paler the skin is along the lips' border.
+float lip_ridge(float red) {
+    return 0.05 * smoothstep(0.0, 0.10, red) * smoothstep(0.55, 0.15, red);
 }
 
 // Light that misses the surface bleeds through it, red the most: powers of about 0.7, 0.95 and 1.05.

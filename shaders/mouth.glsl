@@ -3,12 +3,29 @@ uniform float mouth_light;   // how much light the lips let in
 uniform vec2 mouth_bow;       // how far behind the middle the corners are, and how much higher, metres
 uniform vec4 mouth_opening;  // heights of the upper and the lower lip's edge, half the width, z; in the head's axes, metres
 
+const float LIP_SHADES = 0.0042;   // metres from a lip's edge to where it shades teeth no more, if the mouth is open wide
+const vec3 LIP_GLOW = vec3(0.165, 0.082, 0.074);   // of the light on lips, what goes through them to where they shade themselves
 const float CHEEKS = 0.30;   // of the light on the teeth, what they send to the cheeks beside them
+const float ROUND = 0.24;    // of the key light on an open mouth, what goes round in it from wall to wall
+const float ROUND_DEPTH = 0.040;   // metres, where about a third of that is left
 
 // How far behind the lips a place is.
 float mouth_depth(vec3 at) {
     float aside = at.x / mouth_opening.z;
     return mouth_opening.w - mouth_bow.x * min(aside * aside, 1.6) - at.z;
+}
+
+// How far inside the opening a place is seen, from the nearer lip's edge, 0, to where that shades no more, 1.
+float mouth_clear(vec3 at) {
+    float aside = min(at.x * at.x / (mouth_opening.z * mouth_opening.z), 1.2), bow = mouth_bow.y * aside;
+    float middle = 0.5 * (mouth_opening.x + mouth_opening.y), high = 0.5 * (mouth_opening.x - mouth_opening.y) * (1.0 - min(aside, 1.0));
+    float shaded = clamp(0.45 * (mouth_opening.x - mouth_opening.y), 0.0008, LIP_SHADES);
+    return (high - abs(at.y - middle - bow)) / shaded;
+}
+
+// Of the key light what goes round in the mouth so far behind the lips.
+float mouth_round(float behind) {
+    return ROUND * mouth_light * exp(-max(behind, 0.0) / ROUND_DEPTH);
 }
 
 // At a place in the head's axes: the parts of the surroundings' light and of the key light that arrive.
@@ -25,10 +42,20 @@ vec2 mouth_reach(vec3 at) {
     return vec2(sky, smoothstep(-soft, soft, room) * clamp(high / 0.003, 0.0, 1.0));
 }
 
+// How much of a lip is lit as what is seen of it at rest: its inside lies against the teeth.
+float lip_outer(float lip, float within) {
+    return lip * (1.0 - 0.7 * smoothstep(0.0, 0.35, within));
+}
+
 // How much of the surroundings' light arrives; inside the mouth as the lips let in.
 float sky_light(float ambient, float lip, float mouth, float wet, vec3 at) {
     float light = max(max(ambient, mix(0.40, 0.80, mouth_light) * lip), 0.45 * wet);
     float behind = max(mouth_depth(at), 0.0), inside = mouth_reach(at).x * (0.08 + exp(-max(behind - 0.010, 0.0) / 0.016));
     inside += CHEEKS * mouth_light * exp(-behind / 0.012);
     return mix(light, inside, mouth);
+}
+
+// What gets through and between lips of the key light where they keep it off themselves: less where they touch.
+vec3 lip_glow(float lip, float ambient, float lit) {
+    return lip * mix(smoothstep(-0.80, 0.70, ambient), 0.6, mouth_light) * (1.0 - lit) * LIP_GLOW * light_colour[0].rgb;
 }

@@ -9,9 +9,9 @@ in vec2 detail;        // on a tooth: across and up
 uniform mat4 moved;    // from rest into the scene
 
 centroid out vec3 position, normal, rest_position;
-centroid out vec4 matter;
+centroid out vec4 matter;   // tooth, gum, tongue; of the key light what goes round in the mouth
 centroid out vec2 within;
-centroid out vec3 reach;   // of the surroundings' light and the key light what arrives; how far behind the lips
+centroid out vec4 reach;   // of the surroundings' light and the key light what arrives; how far behind the lips; 0 at their edges .. 1 clear of them
 
 void main() {
     vec4 placed = moved * vec4(place, 1.0);
@@ -22,6 +22,7 @@ void main() {
     within = detail;
     vec3 at = transpose(mat3(head)) * (placed.xyz - head[3].xyz);
     float depth = mouth_depth(at);
-    reach = vec3(mix(mouth_reach(at), vec2(1.0), smoothstep(0.0, 0.006, -depth)), depth);   // before the lips it is light
+    matter.w = mouth_round(depth);
+    reach = vec4(mix(mouth_reach(at), vec2(1.0), smoothstep(0.0, 0.006, -depth)), depth, mouth_clear(at));   // before the lips it is light
     gl_Position = view_projection * placed;
 }

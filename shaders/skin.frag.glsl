@@ -22,7 +22,7 @@ const vec3 LINED = vec3(1.7, 0.3, 1.0);     // lips have lines that run up and d
 const float THROUGH = 0.4;   // how much of the relief the light in the skin shows
 const float SPARSENESS = 43.0, SPOT_FROM = 0.40, SPOT_TO = 0.10;   // volumes a metre, heights: where the deepest pits are, skin is darker
 const vec3 SPOT = vec3(0.92, 0.84, 0.81);
-const float RELIEF = 0.32, LIP_RELIEF = 0.40;
+const float RELIEF = 0.32, LIP_RELIEF = 0.27;
 
 void main() {
     vec3 view = normalize(towards), n = normalize(normal), key = light_direction[0].xyz, light = around, body = key_body;
@@ -45,9 +45,9 @@ void main() {
     light = painted(light);
 #endif
 
-    float lobes = mix(ggx(n_h, rough), ggx(n_h, 0.6 * rough), 0.25) * visibility(n_l, n_v, 0.8 * rough);
+    float lobes = mix(ggx(n_h, rough), ggx(n_h, 0.6 * rough), 0.25 - 0.10 * lip) * visibility(n_l, n_v, 0.8 * rough);
     float gloss = PI * n_l * lobes * fresnel(mix(F0.x, F0.y, max(lip, moist)), max(dot(view, h), 0.0));
     float pit = fine.w - 0.7, spot = smoothstep(SPOT_FROM, SPOT_TO, texture(pores, rest_position * SPARSENESS).w) * (1.0 - max(lip, moist));
     light *= mix(vec3(1.0), SPOT, spot);
-    colour = vec4(finish(light * (1.0 + mix(0.14, 0.30, lip) * pit) + light_colour[0].rgb * (gloss * matter.w * (1.0 + 0.9 * pit))), 1.0);
+    colour = vec4(finish(light * (1.0 + mix(0.14, 0.36, lip) * pit) + light_colour[0].rgb * (gloss * matter.w * (1.0 + 0.9 * pit))), 1.0);
 }

@@ -8,6 +8,6 @@ in float lip_here;
 out vec4 colour;
 
 void main() {
-    vec3 albedo = mix(colour_here, lip_colour(), 0.86 * smoothstep(0.30, 0.75, lip_here));
+    vec3 albedo = mix(colour_here, lip_colour(1.0), 0.86 * lip_share(lip_here, 0.0));
     colour = vec4(to_srgb(clamp(albedo, 0.0, 1.0)), 1.0);
 }

@@ -83,7 +83,7 @@ class Look(Table):
     eyes: EyesLook
     hair: HairLook
     cloth: _Colour
-    teeth: _Colour = [0.655, 0.61, 0.53]
+    teeth: _Colour = [0.56, 0.50, 0.405]
     lights: Lights
     background_inner: _Colour
     background_outer: _Colour

@@ -13,7 +13,7 @@ from agentface.head.model import HeadModel
 
 _EDGE_MARGIN, _FADE = 0.0004, 0.003  # m
 _WIDER = 1.1  # how much wider than the mouth is the part of the arch that counts
-_SLICES = 14
+_SLICES, _FRONT_SLICES = 14, 10  # so wide that each has of a tooth's front
 _FRONT_TEETH, _INCISORS, _NEAR_EDGE = 0.013, 0.006, 0.0016  # m: from the middle, and from the edges
 _Places = TypeVar("_Places", Floats, Doubles)
 
@@ -59,7 +59,7 @@ def arch_distance(places: _Places, front: float | _Places, bend: float | _Places
 def fit_arch(model: HeadModel, part: str) -> Arch:
     """The parabola that touches the teeth ``part`` and has those behind the lips inside."""
     points, crowns, upper = _rows(model, part)
-    front, bend = _parabola(points, _WIDER * float(model.landmarks["mouth_corner_l"][0]))
+    front, bend = _parabola(points, _WIDER * float(model.landmarks["mouth_corner_l"][0]), _SLICES)
     edge = float(crowns[:, 1].min() - _EDGE_MARGIN if upper else crowns[:, 1].max() + _EDGE_MARGIN)
     return Arch(front, bend, edge, _FADE if upper else -_FADE)
 
@@ -69,7 +69,7 @@ def fit_crowns(model: HeadModel, part: str) -> Arch:
     _, crowns, upper = _rows(model, part)
     middle = crowns[np.abs(crowns[:, 0]) < _INCISORS][:, 1]
     edge = float(middle.min() if upper else middle.max())
-    front, bend = _parabola(crowns[np.abs(crowns[:, 1] - edge) < _NEAR_EDGE], _FRONT_TEETH)
+    front, bend = _parabola(crowns[np.abs(crowns[:, 1] - edge) < _NEAR_EDGE], _FRONT_TEETH, _FRONT_SLICES)
     return Arch(front, bend, edge, _FADE if upper else -_FADE)
 
 
@@ -81,10 +81,10 @@ def _rows(model: HeadModel, part: str) -> tuple[Doubles, Doubles, bool]:
     return points, crowns, bool(crowns[:, 1].mean() < points[:, 1].mean())
 
 
-def _parabola(points: Doubles, wide: float) -> tuple[float, float]:
+def _parabola(points: Doubles, wide: float, slices: int) -> tuple[float, float]:
     """``front, bend`` of z = front - bend x^2 that has ``points`` up to ``wide`` m from the middle behind it."""
     x = np.abs(points[:, 0])
-    inside = [points[(x >= a) & (x <= b)] for a, b in pairwise(np.linspace(0.0, wide, _SLICES + 1))]
+    inside = [points[(x >= a) & (x <= b)] for a, b in pairwise(np.linspace(0.0, wide, slices + 1))]
     outer = np.array([of_slice[of_slice[:, 2].argmax()] for of_slice in inside if len(of_slice)])
     system = np.stack([np.ones(len(outer)), -(outer[:, 0] ** 2)], axis=1)
     bend = float(np.linalg.lstsq(system, outer[:, 2], rcond=None)[0][1])

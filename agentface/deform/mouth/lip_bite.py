@@ -11,7 +11,7 @@ ABOVE = np.float32(0.001)
 """m above the incisors' edges, to which the lower lip's rim goes."""
 CLEAR = np.float32(0.0005)
 """m above that, to which the upper lip gives way."""
-BEYOND = np.float32(0.002)
+BEYOND = np.float32(0.0022)
 """m into the crowns, to which the lip would go: that is as soft as the teeth push, which then lay it against them."""
 REACH = np.float32(0.009)
 """m, how far the lip goes up or down at most; farther off, it goes back by less, too."""

@@ -24,12 +24,12 @@ _ACROSS = np.array([-1.0, -0.86, -0.5, 0.0, 0.5, 0.86, 1.0])
 # a crown from the gum behind it over its edge to the gum before it: where, how wide, how far forward, both as parts
 _ROWS = (
     (1.0, 0.76, -2.6),
-    (0.40, 0.82, -2.2),
-    (0.03, 0.80, -1.4),
-    (0.0, 0.86, 0.35),
-    (0.10, 0.98, 0.75),
-    (0.42, 1.03, 1.0),
-    (1.0, 0.90, 0.75),
+    (0.40, 0.86, -2.2),
+    (0.03, 0.86, -1.4),
+    (0.0, 0.90, 0.35),
+    (0.10, 1.01, 0.75),
+    (0.42, 1.05, 1.0),
+    (1.0, 0.97, 0.75),
 )
 _TONGUE_FLAT, _TONGUE_BACK = 0.72, 0.03
 """At rest it lies low behind the lower teeth."""
@@ -83,7 +83,7 @@ def _crown(at: Doubles, across: Doubles, size: tuple[float, float, float], out: 
     for up, wide, forward in _ROWS:
         round_off = np.abs(_ACROSS)
         front = forward * thick - (0.5 * thick + 0.12 * width) * round_off**3
-        edge = (point * round_off + 0.055 * width * round_off**4) * (1.0 - up) ** 3
+        edge = (point * round_off + 0.075 * width * round_off**4) * (1.0 - up) ** 3
         rows.append(
             at
             + np.outer(0.5 * width * wide * _ACROSS, across)
@@ -105,7 +105,8 @@ def _gum(arch: Doubles, edge: float, out: float) -> PartMesh:
     normal = np.stack([along[:, 1], -along[:, 0]], 1)
     normal /= np.linalg.norm(normal, axis=1, keepdims=True)
     normal *= np.sign(normal[len(normal) // 2, 1])
-    profile = ((0.018, 0.052), (0.034, 0.074), (0.046, 0.12), (0.036, 0.19), (-0.05, 0.19), (-0.05, 0.10))
+    # it comes out of the crowns' sides first, so that its border runs in a bow over each of them
+    profile = ((0.0, 0.050), (0.022, 0.086), (0.046, 0.12), (0.036, 0.19), (-0.05, 0.19), (-0.05, 0.10))
     rows = []
     # a smile bares the upper crowns whole; below the lower incisors the chin leaves little room
     short, bared = (1.0, 0.024) if out > 0 else (0.62, 0.0)

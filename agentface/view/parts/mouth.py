@@ -10,15 +10,16 @@ from agentface.conventions import Floats
 from agentface.deform.geometry import FaceGeometry
 from agentface.head.model import HeadModel
 from agentface.head.ring_names import LipRing
+from agentface.head.rings import RingHalves
 from agentface.view.gl.drawn_mesh import DrawnMesh
 from agentface.view.parts.rigid import RigidPart, rigid_mesh
-from agentface.view.parts.teeth import crown_places
+from agentface.view.parts.teeth import crown_places, evened_facing
 
 PARTS = "teeth_upper", "teeth_lower", "tongue"
-SHADED = 0.25  # of the light on the lower jaw, which the upper lip and the nose keep off
-_COLUMNS = np.linspace(0.2, 0.8, 7)  # where the gap is looked at: parts of the way from corner to corner
+SHADED = 0.22  # of the light on the lower jaw, which the upper lip and the nose keep off
+_PLACES = np.linspace(-0.6, 0.6, 7)  # where the gap is looked at: parts of half the mouth's width, to the left
 _PURSED = 0.1  # of the mouth's width at rest, by which it is narrower where it is all pursed
-_MIDDLE = len(_COLUMNS) // 2
+_MIDDLE = len(_PLACES) // 2
 
 
 class Mouth:
@@ -50,13 +51,11 @@ class MouthOpening:
         ring = model.lips.rings[LipRing.LINING]
         self._corners = ring.upper[0], ring.upper[-1]
         touching = model.lips.rings[: LipRing.RED + 1]
-        self._upper, self._lower = (
-            np.array([[half[round(at * (len(half) - 1))] for at in _COLUMNS] for half in halves])
-            for halves in ([ring.upper for ring in touching], [ring.lower for ring in touching])
-        )
-        self._bow = 1.0 - (2.0 * _COLUMNS - 1.0) ** 2  # an opening between two bows
-        self._at_rest = self._gap(*self._edges(model.vertices))
         self._half_at_rest = self._half(model.vertices)
+        pairs = np.array([_facing(model.vertices[:, 0], ring, self._half_at_rest) for ring in touching])
+        self._upper, self._lower = pairs[..., 0], pairs[..., 1]
+        self._bow = 1.0 - _PLACES**2  # an opening between two bows
+        self._at_rest = self._gap(*self._edges(model.vertices))
         self._opened = 0.12 * model.landmarks.eye_separation
 
     def record(self) -> dict[str, Any]:
@@ -102,6 +101,16 @@ class MouthOpening:
         return float(np.maximum(upper - lower, 0.0) @ self._bow / (self._bow @ self._bow))
 
 
+def _facing(across: Floats, ring: RingHalves, half: float) -> list[tuple[int, int]]:
+    """At each of the places a vertex of the upper lip and the one of the lower lip that lies across from it at rest.
+
+    The lips have columns of their own: of a smile, or of corners that hang, those of the same number see a gap where
+    there is none. The lower lip's are the sparser.
+    """
+    lower = [min(ring.lower, key=lambda v: abs(across[v] - at * half)) for at in -_PLACES]
+    return [(min(ring.upper, key=lambda v: abs(across[v] - across[below])), below) for below in lower]
+
+
 def mouth_mesh(model: HeadModel, name: str) -> DrawnMesh:
     """One of :data:`PARTS` for ``shaders/part.vert.glsl``."""
     mesh = model.parts[name]
@@ -109,4 +118,6 @@ def mouth_mesh(model: HeadModel, name: str) -> DrawnMesh:
     material[:, 3] = 0.0
     positions = mesh.attributes["POSITION"]
     detail = crown_places(positions, mesh.triangles, material[:, 0])
-    return rigid_mesh(positions, mesh.triangles, material, detail)
+    drawn = rigid_mesh(positions, mesh.triangles, material, detail)
+    drawn.fields["facing"][:] = evened_facing(positions, drawn.fields["facing"], material[:, 0])
+    return drawn

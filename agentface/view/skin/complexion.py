@@ -51,8 +51,9 @@ _GLOSS = (
     _Spot(0.90, {"nasion": 0.5, "nose_tip": 0.5}, 0.0, (0.12, 0.50, 0.6)),
 )
 _CORNER = _Spot(1.0, {"mouth_corner_l": 1.0}, 0.0, (0.085, 0.075, 0.25))
-_CORNER_SHADE, _CORNER_FADE = 0.35, 0.55
-"""How much light the pockets at the corners of the mouth lack, and how much of the lips' red."""
+_CORNER_LIGHT, _CORNER_EVENED, _CORNER_FADE = 0.38, 0.95, 0.65
+"""How much light the pockets at the corners of the mouth get, how far it is the same all over them, and how much of the
+lips' red they lack."""
 _CREASE_SHADE = 0.65
 """How much light the bottom of the fold above the upper lid lacks, which the mesh has no room for."""
 _CREASES = {
@@ -79,7 +80,8 @@ def complexion(model: HeadModel, covered: Floats, stubble: float = 0.0) -> Float
     red, socket, gloss = (sum(spot.field(model) for spot in spots) for spots in (_RED, _SOCKET, _GLOSS))
     beard = stubble * _beard(model)
     red = (red + _RED_EARS * model.material[:, 3]) * (1.0 - beard) - beard
-    tints = np.stack([red, socket, gloss, covered], axis=1)
+    bare = covered * (1.0 - model.material[:, 1])  # long hair hangs round the mouth's lining, not on it
+    tints = np.stack([red, socket, gloss, bare], axis=1)
     return np.asarray(np.clip(tints, [-1, 0, 0, 0], 1), np.float32)
 
 
@@ -87,7 +89,8 @@ def folds(model: HeadModel) -> Floats:
     """``(V, 1)`` 0..1: of the surroundings' light what reaches the skin at rest, in its folds and pockets too."""
     shade = model.shade[:, 0]
     light = shade * np.clip(_DARKER + _STEEPER * shade, 0.0, 1.0)
-    light = light * (1.0 - _CORNER_SHADE * _CORNER.field(model)) * (1.0 - _CREASE_SHADE * _lid_creases(model))
+    light = light + _CORNER_EVENED * _CORNER.field(model) * (_CORNER_LIGHT - light)
+    light = light * (1.0 - _CREASE_SHADE * _lid_creases(model))
     return light[:, None].astype(np.float32)
 
 
