@@ -12,40 +12,31 @@ from agentface.head.look import HairLook
 from agentface.head.model import HeadModel
 from agentface.mesh.smoothstep import smoothstep
 from agentface.view.gl.drawn_mesh import DrawnMesh
-from agentface.view.hair.groom import smoothed, waves
-from agentface.view.hair.hairline import Hairline
+from agentface.view.hair.drape import draped
+from agentface.view.hair.groom import waves
 from agentface.view.hair.hull import Hull
 from agentface.view.hair.ribbons import unit_rows
-from agentface.view.hair.strand_set import StrandSet, paints
 from agentface.view.hair.strands import middle_of, sector_of, skin_round
-from agentface.view.hair.styles import REFERENCE_EYES, STYLES, Amount, parting_of, whorl_of
+from agentface.view.hair.styles import REFERENCE_EYES, STYLES
 from agentface.view.hair.visible import before_skin
 
-_COLUMNS, _ROWS = 48, 20
-_INNER_FROM, _INNER_ROWS, _INNER_BEHIND = 0.5, 8, 4
-"""The inner sheet is seen between tips only: where along the hair it starts, its rows, its first column."""
-_LAYERS = (1.0, 0.6)
-"""Where between the skin and the outside of the hair the sheets lie."""
-_ON_PARTING = 0.45
-"""The part of the columns that start along the parting; the others fan out round the whorl."""
-_TURNS_DEG = (46.0, 186.0)
-"""Round the head from the front, where it is widest: where the first and the last column lie."""
-_ARC, _FALL, _SMOOTHINGS = 24, 12, 60
-_BESIDE = 0.0008
-"""Metres from the parting where hair starts."""
-_AT_PARTING, _RISE = 0.25, 0.045
+_FROM, _ROWS = 1, 18
+"""The column at which they start, for single locks frame the face; points along each."""
+_LAYER, _SHARE = 0.4, 0.97
+"""Where between the skin and the outside of the hair the sheets lie, and how long they are beside the cards."""
+_LIGHT = 0.42
+"""How much light the cards let through to them."""
+_AT_PARTING, _RISE = 0.22, 0.050
 """How high hair lies where it starts, as a part of its thickness, and the metres over which it rises from there."""
 _EDGE_SHADE, _EDGE_REACH = 0.6, 0.011
 """How much light the front edge keeps off the skin below it, and within how many metres."""
 LOCKS = 13
 _WIDTHS = 0.3, 1.7
 """Of the spaces between columns, in locks, as parts of their mean."""
-_RIDGE, _UNEVEN = 0.0016, 0.05
-"""Metres that a lock rises over the gaps beside it; the part by which the lengths of locks differ."""
-_LOWEST = 0.0035
+_UNEVEN = 0.05
+"""The part by which the lengths of locks differ."""
+_LOWEST = 0.0018
 """Metres over the hull, which is smoother than the head."""
-_AWAY, _TO_THE_FRONT = 0.004, 2.0
-"""Metres that single hairs leave a sheet; the exponent with which their columns gather at the face."""
 _INSIDE_BELOW = 0.045
 """Metres over the centre: below it hair stands off forehead, face and neck, and is seen from inside too."""
 _TUCKED = 0.2
@@ -85,92 +76,41 @@ class Sheet:
 
 
 def sheets(model: HeadModel, look: HairLook, hull: Hull, rng: np.random.Generator) -> list[Sheet]:
-    """The sheets of hair that falls from a parting over the ``hull`` with its ears, the outer ones first."""
+    """The sheets of hair that falls from a parting over the ``hull`` with its ears: what is seen between cards."""
     style = STYLES[look.style]
     thickness = style.thickness * look.volume * model.landmarks.eye_separation / REFERENCE_EYES
-    grown = []
-    for side in SIDES:
-        paths = _paths(model, look, hull, 1.0 if side == SIDES[0] else -1.0)
-        grown += [
-            _sheet(hull, look, paths[0 if layer == 1.0 else _INNER_BEHIND :], thickness, layer, rng)
-            for layer in _LAYERS
-        ]
-    return [*grown[:: len(_LAYERS)], *grown[1 :: len(_LAYERS)]]
-
-
-def _paths(model: HeadModel, look: HairLook, hull: Hull, sign: float) -> Doubles:
-    """``(C, K, 3)`` m on the hull: from the parting over the head, by the shortest way, to its widest, then down."""
-    roots = _roots(model, look, hull, sign) - hull.centre
-    first = unit_rows(roots)
-    turn = np.radians(np.linspace(*_TURNS_DEG, _COLUMNS))
-    last = np.stack([sign * np.sin(turn), 0.0 * turn, np.cos(turn)], axis=1)
-    angle = np.arccos(np.clip((first * last).sum(1), -1.0, 1.0))[:, None, None]
-    part = np.linspace(0.0, 1.0, _ARC)[None, :, None]
-    arc = (np.sin((1.0 - part) * angle) * first[:, None] + np.sin(part * angle) * last[:, None]) / np.sin(angle)
-    arc = hull.hold(hull.centre + 0.1 * arc, 0.0, 0.0)
-    lowest = look.length * float(model.landmarks["menton"][1])
-    drop = np.linspace(0.0, 1.0, _FALL + 1)[None, 1:, None] * (lowest - arc[:, -1:, 1:2])
-    fall = arc[:, -1:] + drop * [0.0, 1.0, 0.0]
-    path = np.concatenate([arc, hull.hold(fall, 0.0, 0.0)], axis=1)
-    return hull.push_out(smoothed(path, _SMOOTHINGS), 0.0)
+    return [
+        _sheet(hull, look, draped(model, look, hull, 1.0 if side == SIDES[0] else -1.0)[_FROM::2], thickness, rng)
+        for side in SIDES
+    ]
 
 
 def edge_shade(grown: list[Sheet], skin: Floats) -> Doubles:
     """``(V,)`` 0..1: how much of the surroundings' light hair at the face keeps off the ``skin (V, 3)`` beside it."""
     away = np.full(len(skin), np.inf, np.float32)
-    for sheet in _outer(grown):
+    for sheet in grown:
         away = np.minimum(away, np.linalg.norm(skin[:, None] - sheet.points[0], axis=2).min(axis=1))
     return np.asarray(_EDGE_SHADE * np.exp(-((away / _EDGE_REACH) ** 2)), np.float64)
 
 
-def _outer(grown: list[Sheet]) -> list[Sheet]:
-    return grown[: len(SIDES)]
-
-
-def parting_line(model: HeadModel, look: HairLook, hull: Hull) -> Doubles:
-    """``(N, 3)`` m on the hull: the parting from the hairline back to the whorl."""
-    line, whorl = Hairline(model, look.hairline), whorl_of(model, look)
-    pitch = np.radians(np.linspace(85.0, -30.0, 400))
-    top = hull.hold(hull.centre + 0.1 * np.stack([0 * pitch, np.cos(pitch), np.sin(pitch)], axis=1), 0.0, 0.0)
-    part = np.clip((top[:, 2] - whorl[2]) / (top[0, 2] - whorl[2]), 0.0, 1.0)
-    top[:, 0] = whorl[0] + (parting_of(model, look) - whorl[0]) * part
-    top = hull.hold(top, 0.0, 0.0)
-    first, last = int(np.argmax(line.behind(top) > 0.001)), int(np.argmax(top[:, 2] < whorl[2]))
-    return top[first:last]
-
-
-def _roots(model: HeadModel, look: HairLook, hull: Hull, sign: float) -> Doubles:
-    """``(C, 3)`` m along the parting from the hairline back, then round the whorl to the middle of the back."""
-    line, count = parting_line(model, look, hull), round(_ON_PARTING * _COLUMNS)
-    chosen = line[np.linspace(0, len(line) - 1, count).astype(int)]
-    fan = np.radians(np.linspace(90.0, 190.0, _COLUMNS - count))
-    round_whorl = chosen[-1] + 0.004 * np.stack([sign * np.sin(fan), 0 * fan, np.cos(fan)], axis=1)
-    chosen[:, 0] += sign * _BESIDE
-    return np.concatenate([chosen, round_whorl])
-
-
-def _sheet(
-    hull: Hull, look: HairLook, paths: Doubles, thickness: float, layer: float, rng: np.random.Generator
-) -> Sheet:
+def _sheet(hull: Hull, look: HairLook, paths: Doubles, thickness: float, rng: np.random.Generator) -> Sheet:
     widths = rng.uniform(*_WIDTHS, len(paths) - 1)
     across = np.concatenate([[0.0], np.cumsum(widths)]) * LOCKS / widths.sum()
-    t = np.linspace(0.0, 1.0, _ROWS) ** 1.3 if layer == 1.0 else np.linspace(_INNER_FROM, 1.0, _INNER_ROWS)
+    t = np.linspace(0.0, 1.0, _ROWS) ** 1.2
     uneven = np.interp(across, np.arange(LOCKS + 1), rng.uniform(0.0, 1.0, LOCKS + 1))
-    points, along = _resampled(paths, t, (1.0 - _UNEVEN * uneven) * (0.94 + 0.06 * layer))
-    ridge = np.sin(np.pi * (across % 1.0))[:, None] - 0.5
+    points, along = resampled(paths, t, _SHARE * (1.0 - _UNEVEN * uneven))
     tucked = _TUCKED + (1.0 - _TUCKED) * smoothstep(0.0, 1.5, across)[:, None]
     risen = _AT_PARTING + (1.0 - _AT_PARTING) * np.sin(0.5 * np.pi * np.clip(along / _RISE, 0.0, 1.0))
-    height = thickness * layer * tucked * risen + _RIDGE * np.sqrt(t) * ridge
-    height = np.maximum(height, 0.001 + layer * _LOWEST * smoothstep(0.0, 0.03, along))
+    height = np.maximum(thickness * _LAYER * tucked * risen, 0.001 + _LOWEST * smoothstep(0.0, 0.03, along))
     points = points + height[..., None] * hull.outward(points)
     if look.curl:
-        points = points + 0.006 * look.curl * waves(hull, points, along, uneven)
-    light = 0.55 + 0.45 * layer * (0.6 + 0.4 * smoothstep(0.0, 0.02, along))
-    places = np.stack(np.broadcast_arrays(across[:, None], t, light, layer + uneven[:, None]), axis=2)
+        points = points + 0.003 * look.curl * waves(hull, points, along, uneven)
+    light = np.broadcast_to(_LIGHT, along.shape)
+    places = np.stack(np.broadcast_arrays(across[:, None], t, light, uneven[:, None]), axis=2)
     return Sheet(points.astype(np.float32), places.astype(np.float32), hull.centre)
 
 
-def _resampled(paths: Doubles, t: Doubles, share: Doubles) -> tuple[Doubles, Doubles]:
+def resampled(paths: Doubles, t: Doubles, share: Doubles) -> tuple[Doubles, Doubles]:
     """``(C, R, 3)`` m and ``(C, R)`` m: points at parts ``t`` of each path's length times ``share``; the lengths."""
     steps = np.linalg.norm(np.diff(paths, axis=1), axis=2)
     way = np.concatenate([np.zeros((len(paths), 1)), np.cumsum(steps, axis=1)], axis=1)
@@ -179,26 +119,6 @@ def _resampled(paths: Doubles, t: Doubles, share: Doubles) -> tuple[Doubles, Dou
     for column, (line, known, wanted) in enumerate(zip(paths, way, along, strict=True)):
         points[column] = np.stack([np.interp(wanted, known, line[:, axis]) for axis in range(3)], axis=1)
     return points, along
-
-
-def flyaways(grown: list[Sheet], amount: Amount, look: HairLook, rng: np.random.Generator) -> StrandSet:
-    """Single hairs that leave the outer sheets: most of them frame the face."""
-    outer = _outer(grown)
-    count, t = amount.hairs, np.linspace(0.0, 1.0, amount.points)
-    column = np.floor(_COLUMNS * rng.random(count) ** _TO_THE_FRONT).astype(int)
-    lines = np.stack([sheet.points for sheet in outer]).astype(np.float64)[rng.integers(0, len(outer), count), column]
-    from_row, share = np.floor(rng.random(count) * 0.5 * _ROWS), rng.uniform(0.25, 0.6, count)
-    row = np.minimum(from_row[:, None] + share[:, None] * _ROWS * t, _ROWS - 1.001)
-    low, part = row.astype(int), (row % 1.0)[..., None]
-    each = np.arange(count)[:, None]
-    points = (1.0 - part) * lines[each, low] + part * lines[each, low + 1]
-    away = unit_rows(points - outer[0].centre)
-    off = rng.uniform(0.0, _AWAY, count)[:, None] * np.sin(np.pi * t * rng.uniform(0.5, 1.0, (count, 1)))
-    drift = rng.normal(0.0, 0.5 * _AWAY, (count, 1, 3)) * (t**2)[:, None]
-    points = points + off[..., None] * away + drift
-    paint = paints(look, np.full(count, 1.3), np.full(count, 0.7), rng, 0.4)
-    return StrandSet(points, amount.radius * rng.uniform(0.6, 1.2, count), paint, np.ones((count, len(t))),
-                  np.ones(count), np.ones(count))  # fmt: skip
 
 
 def sheets_mesh(grown: list[Sheet]) -> DrawnMesh:

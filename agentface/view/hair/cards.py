@@ -1,0 +1,119 @@
+"""Hair cards: narrow locks that lie over the sheets, each with its own way, height, length and end."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from agentface.conventions import SIDES, Doubles
+from agentface.head.look import HairLook
+from agentface.head.model import HeadModel
+from agentface.mesh.smoothstep import smoothstep
+from agentface.view.hair.drape import draped
+from agentface.view.hair.groom import smoothed
+from agentface.view.hair.hull import Hull
+from agentface.view.hair.ribbons import unit_rows
+from agentface.view.hair.sheets import Sheet, resampled
+from agentface.view.hair.styles import REFERENCE_EYES, STYLES
+
+_CARDS, _ROWS = 42, 20
+"""On each side; points along each."""
+_ACROSS = np.array([-1.0, 1.0])
+_TO_THE_FRONT = 1.25
+"""The exponent with which they gather at the face."""
+_OVERLAP, _NARROWEST = 1.7, 0.0022
+"""A card's width in spaces between cards; its least half width, metres."""
+_SHORTEST = 0.86
+_FIRST_NUMBER, _NUMBERS, _OWN = 20, 24, 40.0
+"""What the shader draws hairs by: far from the numbers of the sheets, and few enough for its arithmetic."""
+_AT_PARTING, _RISE = 0.22, 0.050
+"""How high cards lie where they start, as a part of the hair's thickness, and the metres over which they rise."""
+_LOW = 0.45
+"""How high the lowest lie, as a part of the hair's thickness."""
+_APART = 0.0010
+"""Metres by which the highest lie over the lowest from the root on, so that none cut through others."""
+_WISPS, _WISP_WIDTH, _WISP_DRIFT = 4, 0.4, 1.8
+"""Every how many cards at the face one is a wisp; how wide, and how far off its way, beside the others."""
+_AT_FACE = 0.30
+"""The part of the columns that are at the face."""
+_WAVE, _WAVE_LENGTH = 0.0055, (0.075, 0.125)
+_DRIFT = 0.0045
+_TURNED_IN = 0.014
+"""Metres that ends turn in at most, besides all of them."""
+_ROOT_LIGHT = 0.70
+
+
+def cards(model: HeadModel, look: HairLook, hull: Hull, rng: np.random.Generator) -> list[Sheet]:
+    """The cards of both sides."""
+    thickness = STYLES[look.style].thickness * look.volume * model.landmarks.eye_separation / REFERENCE_EYES
+    grown = []
+    for side in SIDES:
+        paths = draped(model, look, hull, 1.0 if side == SIDES[0] else -1.0)
+        grown += _row(hull, look, paths, thickness, rng)
+    return grown
+
+
+def _row(hull: Hull, look: HairLook, paths: Doubles, thickness: float, rng: np.random.Generator) -> list[Sheet]:
+    count = _CARDS
+    place = (np.arange(count) + rng.uniform(0.0, 0.7, count)) / count
+    column = (len(paths) - 1) * place**_TO_THE_FRONT
+    t = np.linspace(0.0, 1.0, _ROWS) ** 1.2
+    share = _SHORTEST + (1.04 - _SHORTEST) * rng.random(count) ** 0.6
+    middle, along = resampled(_between(paths, column), t, share)
+    gap = len(paths) / count * _TO_THE_FRONT * place ** (_TO_THE_FRONT - 1.0)
+    aside = resampled(_between(paths, np.minimum(column + 1.0, len(paths) - 1.0)), t, share)[0]
+    aside -= resampled(_between(paths, np.maximum(column - 1.0, 0.0)), t, share)[0]
+    half = 0.25 * _OVERLAP * gap[:, None] * np.linalg.norm(aside, axis=2) * rng.uniform(0.7, 1.35, (count, 1))
+    half = np.maximum(half, _NARROWEST) * (1.0 - 0.40 * smoothstep(0.55, 1.0, t))
+    wisp = (place < _AT_FACE) & (np.arange(count) % _WISPS == 1)
+    half *= np.where(wisp, _WISP_WIDTH, 1.0)[:, None]
+    layer = rng.permutation(count)[:, None] / (count - 1.0)
+    drift = _DRIFT * np.where(wisp, _WISP_DRIFT, 1.0) * rng.normal(size=count).clip(-1.3, 1.3)
+    points = _lying(hull, look, middle, along, t, thickness, layer, drift, rng)
+    return _woven(hull, points, half, t, layer, rng)
+
+
+def _lying(
+    hull: Hull, look: HairLook, middle: Doubles, along: Doubles, t: Doubles, thickness: float, layer: Doubles,
+    drift: Doubles, rng: np.random.Generator,
+) -> Doubles:  # fmt: skip
+    """``(N, R, 3)`` m: the middle line of each card, off the ``hull`` and a little off its way."""
+    count = len(middle)
+    risen = _AT_PARTING + (1.0 - _AT_PARTING) * np.sin(0.5 * np.pi * np.clip(along / _RISE, 0.0, 1.0))
+    height = thickness * (1.0 - (1.0 - _LOW) * (1.0 - layer) * smoothstep(0.01, 0.14, along)) * risen + _APART * layer
+    height = height - _TURNED_IN * rng.random((count, 1)) ** 2 * smoothstep(0.75, 1.0, t) ** 1.5
+    out = hull.outward(middle)
+    across = unit_rows(np.cross(np.gradient(middle, axis=1), out))
+    turn = 2.0 * np.pi * (along / rng.uniform(*_WAVE_LENGTH, (count, 1)) + rng.random((count, 1)))
+    grown = np.clip(along / 0.09, 0.0, 1.0)
+    sway = look.curl * _WAVE * rng.uniform(0.4, 1.0, (count, 1)) * grown * np.sin(turn)
+    sway = sway + drift[:, None] * t**1.5
+    height = height + 0.35 * look.curl * _WAVE * grown * np.cos(turn)
+    least = 0.002 + 0.0025 * smoothstep(0.0, 0.03, along)
+    points = hull.push_out(middle + sway[..., None] * across + height[..., None] * out, least)
+    return smoothed(points, 1)
+
+
+def _woven(
+    hull: Hull, points: Doubles, half: Doubles, t: Doubles, layer: Doubles, rng: np.random.Generator
+) -> list[Sheet]:
+    out = hull.outward(points)
+    across = unit_rows(np.cross(np.gradient(points, axis=1), out))
+    count = len(points)
+    twist = 0.45 * rng.normal(size=(count, 1)) * smoothstep(0.2, 0.7, t)
+    light = (0.78 + 0.22 * layer) * (_ROOT_LIGHT + (1.0 - _ROOT_LIGHT) * smoothstep(0.0, 0.30, t))
+    own = _OWN * rng.random(count)
+    grown = []
+    for k in range(count):
+        bent = across[k] + twist[k, :, None] * out[k]
+        grid = points[k] + _ACROSS[:, None, None] * half[k, :, None] * bent
+        number = _FIRST_NUMBER + k % _NUMBERS + 0.5 + 0.498 * _ACROSS
+        places = np.stack(np.broadcast_arrays(number[:, None], t, light[k], own[k]), axis=2)
+        grown.append(Sheet(grid.astype(np.float32), places.astype(np.float32), hull.centre))
+    return grown
+
+
+def _between(paths: Doubles, column: Doubles) -> Doubles:
+    """``(N, K, 3)``: the paths at ``column (N,)`` of ``paths (C, K, 3)``."""
+    low = np.minimum(column.astype(int), len(paths) - 2)
+    part = (column - low)[:, None, None]
+    return np.asarray((1.0 - part) * paths[low] + part * paths[low + 1])
