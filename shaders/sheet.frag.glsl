@@ -9,9 +9,9 @@ uniform float least_cover; // of a pixel, that is drawn
 const float HAIRS = 26.0;      // that are seen in a lock
 const float CARDS = 20.0;      // the first number of a lock that is a card
 const float CARD_HAIRS = 15.0; // that are seen in a card
-const float WISP = 5.0;        // hairs that end together in a point
+const float WISP = 3.5;        // hairs that end together in a point
 const float TIP = 0.11;        // of the length, over which hairs end
-const float EDGE = 6.0;        // hairs a lock's width, over which the sheet's front edge grows dense
+const float EDGE = 3.0;        // hairs a lock's width, over which the sheet's front edge grows dense
 const float APART = 0.55;      // from here on locks narrow towards their tips
 
 float scattered(float number) {
@@ -29,8 +29,8 @@ void main() {
     float card = step(CARDS, strand.x);
     float hairs = mix(HAIRS, CARD_HAIRS, card) * strand.x + 1.5 * drift.r, here = scattered(floor(hairs));
     float narrow = mix(1.05, 0.78, card * smoothstep(0.0, 0.2, along)) - (0.10 + 0.35 * own) * smoothstep(APART, 1.0, along);
-    float edge = EDGE * strand.x * (1.2 - along) + 0.8 * along;   // fewer hairs frame the face
-    float wisp = hairs / WISP, ends = scattered(floor(wisp) + 7.0), last = 1.0 - TIP * ((0.3 + own) * ends * ends + 0.3 * own + 0.4 * here);
+    float edge = EDGE * (strand.x - CARDS * card) * (1.2 - along) + 0.8 * along;   // fewer hairs frame the face
+    float wisp = hairs / WISP, ends = scattered(floor(wisp) + 7.0), last = 1.0 - TIP * ((0.3 + own) * ends * ends + 0.3 * own + 0.2 * here);
     vec3 within = vec3(edge + 0.25 - here, (last - along) / (0.6 * TIP) - abs(2.0 * fract(wisp) - 1.0), narrow + mix(0.35, 0.40, card) * here - abs(lock));
     vec3 covered = clamp(0.5 + within / max(fwidth(within), 1e-4), 0.0, 1.0);
     float cover = min(covered.x, min(covered.y, covered.z));

@@ -22,7 +22,7 @@ void main() {
     vec3 view = normalize(eye_point.xyz - placed);
     n = dot(n, view) < 0.0 ? -n : n;
     float own = fract(sheet.w * 3.7);
-    vec3 base = hair_colour * mix(0.9, 1.45, smoothstep(0.15, 1.0, sheet.y)) * (0.85 + 0.3 * fract(sheet.w * 5.3));
+    vec3 base = hair_colour * mix(0.9, 1.8, smoothstep(0.15, 1.0, sheet.y)) * (0.85 + 0.3 * fract(sheet.w * 5.3));
     HairLight light = hair_lights(base, along, n, view, gloss, 0.30 * (own - 0.5), sheet.z);
     dull = finish(light.body + 0.45 * light.shine);
     bright = finish(light.body + 2.6 * light.shine);

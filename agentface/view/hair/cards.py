@@ -29,14 +29,18 @@ _AT_PARTING, _RISE = 0.22, 0.050
 """How high cards lie where they start, as a part of the hair's thickness, and the metres over which they rise."""
 _LOW = 0.45
 """How high the lowest lie, as a part of the hair's thickness."""
+_GOLDEN = 0.618
+"""Turns from the height of a card to the next one's, so that neighbours lie apart."""
 _APART = 0.0010
 """Metres by which the highest lie over the lowest from the root on, so that none cut through others."""
 _WISPS, _WISP_WIDTH, _WISP_DRIFT = 4, 0.4, 1.8
 """Every how many cards at the face one is a wisp; how wide, and how far off its way, beside the others."""
+_TUCKED = 0.45
+"""How high the first of them lies, as a part of the hair's thickness."""
 _AT_FACE = 0.30
 """The part of the columns that are at the face."""
-_WAVE, _WAVE_LENGTH = 0.0055, (0.075, 0.125)
-_DRIFT = 0.0045
+_WAVE, _WAVE_LENGTH = 0.0060, (0.10, 0.17)
+_DRIFT = 0.0040
 _TURNED_IN = 0.014
 """Metres that ends turn in at most, besides all of them."""
 _ROOT_LIGHT = 0.70
@@ -56,7 +60,7 @@ def _row(hull: Hull, look: HairLook, paths: Doubles, thickness: float, rng: np.r
     count = _CARDS
     place = (np.arange(count) + rng.uniform(0.0, 0.7, count)) / count
     column = (len(paths) - 1) * place**_TO_THE_FRONT
-    t = np.linspace(0.0, 1.0, _ROWS) ** 1.2
+    t = np.linspace(0.0, 1.0, _ROWS) ** 1.4
     share = _SHORTEST + (1.04 - _SHORTEST) * rng.random(count) ** 0.6
     middle, along = resampled(_between(paths, column), t, share)
     gap = len(paths) / count * _TO_THE_FRONT * place ** (_TO_THE_FRONT - 1.0)
@@ -64,22 +68,24 @@ def _row(hull: Hull, look: HairLook, paths: Doubles, thickness: float, rng: np.r
     aside -= resampled(_between(paths, np.maximum(column - 1.0, 0.0)), t, share)[0]
     half = 0.25 * _OVERLAP * gap[:, None] * np.linalg.norm(aside, axis=2) * rng.uniform(0.7, 1.35, (count, 1))
     half = np.maximum(half, _NARROWEST) * (1.0 - 0.40 * smoothstep(0.55, 1.0, t))
-    wisp = (place < _AT_FACE) & (np.arange(count) % _WISPS == 1)
+    wisp = (place < _AT_FACE) & (np.arange(count) % _WISPS == _WISPS - 1)
     half *= np.where(wisp, _WISP_WIDTH, 1.0)[:, None]
-    layer = rng.permutation(count)[:, None] / (count - 1.0)
+    layer = (_GOLDEN * np.arange(count))[:, None] % 1.0
     drift = _DRIFT * np.where(wisp, _WISP_DRIFT, 1.0) * rng.normal(size=count).clip(-1.3, 1.3)
-    points = _lying(hull, look, middle, along, t, thickness, layer, drift, rng)
-    return _woven(hull, points, half, t, layer, rng)
+    tucked = _TUCKED + (1.0 - _TUCKED) * smoothstep(0.0, _AT_FACE, place)
+    points = _lying(hull, look, middle, along, t, thickness * tucked[:, None], layer, drift, rng)
+    return _woven(hull, points, aside, half, t, layer, rng)
 
 
 def _lying(
-    hull: Hull, look: HairLook, middle: Doubles, along: Doubles, t: Doubles, thickness: float, layer: Doubles,
+    hull: Hull, look: HairLook, middle: Doubles, along: Doubles, t: Doubles, thickness: Doubles, layer: Doubles,
     drift: Doubles, rng: np.random.Generator,
 ) -> Doubles:  # fmt: skip
     """``(N, R, 3)`` m: the middle line of each card, off the ``hull`` and a little off its way."""
     count = len(middle)
     risen = _AT_PARTING + (1.0 - _AT_PARTING) * np.sin(0.5 * np.pi * np.clip(along / _RISE, 0.0, 1.0))
-    height = thickness * (1.0 - (1.0 - _LOW) * (1.0 - layer) * smoothstep(0.01, 0.14, along)) * risen + _APART * layer
+    height = thickness * (1.0 - (1.0 - _LOW) * (1.0 - layer) * smoothstep(0.02, 0.15, along)) * risen
+    height = height + _APART * layer * smoothstep(0.0, 0.02, along)
     height = height - _TURNED_IN * rng.random((count, 1)) ** 2 * smoothstep(0.75, 1.0, t) ** 1.5
     out = hull.outward(middle)
     across = unit_rows(np.cross(np.gradient(middle, axis=1), out))
@@ -88,25 +94,31 @@ def _lying(
     sway = look.curl * _WAVE * rng.uniform(0.4, 1.0, (count, 1)) * grown * np.sin(turn)
     sway = sway + drift[:, None] * t**1.5
     height = height + 0.35 * look.curl * _WAVE * grown * np.cos(turn)
-    least = 0.002 + 0.0025 * smoothstep(0.0, 0.03, along)
+    least = 0.002 + 0.0035 * smoothstep(0.0, 0.03, along)
     points = hull.push_out(middle + sway[..., None] * across + height[..., None] * out, least)
     return smoothed(points, 1)
 
 
 def _woven(
-    hull: Hull, points: Doubles, half: Doubles, t: Doubles, layer: Doubles, rng: np.random.Generator
+    hull: Hull, points: Doubles, aside: Doubles, half: Doubles, t: Doubles, layer: Doubles, rng: np.random.Generator
 ) -> list[Sheet]:
+    """Their two edges, at the roots side by side as their neighbours are, ``aside (N, R, 3)``."""
     out = hull.outward(points)
     across = unit_rows(np.cross(np.gradient(points, axis=1), out))
+    across *= np.sign((across * aside).sum(2, keepdims=True))
+    side_by_side = (1.0 - smoothstep(0.0, 0.25, t))[:, None]
+    across = unit_rows(side_by_side * unit_rows(aside) + (1.0 - side_by_side) * across)
     count = len(points)
-    twist = 0.45 * rng.normal(size=(count, 1)) * smoothstep(0.2, 0.7, t)
+    twist = 0.35 * rng.normal(size=(count, 1)) * smoothstep(0.25, 0.7, t)
     light = (0.78 + 0.22 * layer) * (_ROOT_LIGHT + (1.0 - _ROOT_LIGHT) * smoothstep(0.0, 0.30, t))
     own = _OWN * rng.random(count)
+    edges = points[:, None] + _ACROSS[:, None, None] * (half[..., None] * across)[:, None]
+    # on the head's round both lie as high as the middle, but for the card's own twist
+    rise = hull.height(points)[:, None] - hull.height(edges) + _ACROSS[:, None] * (half * twist)[:, None]
+    edges = edges + rise[..., None] * hull.outward(edges)
     grown = []
-    for k in range(count):
-        bent = across[k] + twist[k, :, None] * out[k]
-        grid = points[k] + _ACROSS[:, None, None] * half[k, :, None] * bent
-        number = _FIRST_NUMBER + k % _NUMBERS + 0.5 + 0.498 * _ACROSS
+    for k, grid in enumerate(edges):
+        number = _FIRST_NUMBER + (1 + (k - 1) % _NUMBERS if k else 0) + 0.5 + 0.498 * _ACROSS
         places = np.stack(np.broadcast_arrays(number[:, None], t, light[k], own[k]), axis=2)
         grown.append(Sheet(grid.astype(np.float32), places.astype(np.float32), hull.centre))
     return grown

@@ -22,11 +22,13 @@ _TURNS_DEG = (45.0, 186.0)
 _ARC, _FALL = 24, 14
 _SMOOTHINGS, _PULLS = 8, 10
 """Hair hangs taut over what stands out: smoothed, and pushed out of the head again, so many times."""
+_WHORL = 0.010
+"""Metres round the whorl where hair starts."""
 _BESIDE = 0.0011
 """Metres from the parting where hair starts."""
 _ZIGZAG = ((0.0011, 240.0, 0.0), (0.0006, 610.0, 1.3))
 """Waves of the parting, which is no line: metres to both sides, radians a metre, where each starts."""
-_FRAMING_DEG, _FRAMING_REACH_DEG = 12.0, 24.0
+_FRAMING_DEG, _FRAMING_REACH_DEG = 14.0, 24.0
 """How far the hair at the face comes forward over the cheeks, and to which turn behind it does."""
 _BULGE, _INWARD = 0.005, 0.022
 """Metres that falling hair stands off half way down, and that its ends turn in towards the neck."""
@@ -46,7 +48,7 @@ def draped(model: HeadModel, look: HairLook, hull: Hull, sign: float) -> Doubles
     path = np.concatenate([arc, _fall(model, look, arc[:, -1] - hull.centre, sign, scale) + hull.centre], axis=1)
     for _ in range(_PULLS):
         path = hull.push_out(smoothed(path, _SMOOTHINGS), 0.0)
-    return smoothed(path, 2)
+    return smoothed(path, 6)
 
 
 def _fall(model: HeadModel, look: HairLook, widest: Doubles, sign: float, scale: float) -> Doubles:
@@ -83,7 +85,7 @@ def _roots(model: HeadModel, look: HairLook, hull: Hull, sign: float) -> Doubles
     line, count = parting_line(model, look, hull), round(_ON_PARTING * COLUMNS)
     chosen = line[np.linspace(0, len(line) - 1, count).astype(int)]
     fan = np.radians(np.linspace(90.0, 190.0, COLUMNS - count))
-    round_whorl = chosen[-1] + 0.004 * np.stack([sign * np.sin(fan), 0 * fan, np.cos(fan)], axis=1)
+    round_whorl = chosen[-1] + _WHORL * np.stack([sign * np.sin(fan), 0 * fan, np.cos(fan)], axis=1)
     chosen[:, 0] += sign * _BESIDE
     chosen[:, 0] += sum(far * np.sin(turns * chosen[:, 2] + start) for far, turns, start in _ZIGZAG)
     return np.concatenate([chosen, round_whorl])

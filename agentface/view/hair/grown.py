@@ -14,13 +14,13 @@ from agentface.head.model import HeadModel
 from agentface.view.hair.cap import scalp_cap
 from agentface.view.hair.cards import cards
 from agentface.view.hair.drape import parting_line
-from agentface.view.hair.flyaways import flyaways
+from agentface.view.hair.flyaways import baby_hairs, flyaways
 from agentface.view.hair.groom import groom
 from agentface.view.hair.hairline import Hairline
 from agentface.view.hair.hull import Hull
 from agentface.view.hair.sheets import Sheet, edge_shade, sheets
 from agentface.view.hair.strands import Strands
-from agentface.view.hair.styles import PARTED, STYLES
+from agentface.view.hair.styles import PARTED, STYLES, parting_of
 from agentface.view.parts.anchored import Anchored
 
 _T = TypeVar("_T")
@@ -49,8 +49,8 @@ class GrownHair:
 
     @property
     def sheets(self) -> list[Sheet]:
-        """Long hair: cards, and what is seen between them."""
-        return self._cards + self._beneath
+        """Long hair: cards, and what is seen between them; what gets the most light hides the rest, and comes first."""
+        return sorted(self._cards + self._beneath, key=lambda sheet: -float(sheet.places[..., 2].max()))
 
     @property
     def gloss(self) -> float:
@@ -87,5 +87,7 @@ class GrownHair:
     def _grow_strands(self, quality: str) -> Strands:
         model, look, rng = self._model, self._look, np.random.default_rng(_SEED)
         if self._cards:
-            return flyaways(self._cards, STYLES[look.style].amounts[quality], look, rng).in_order(model)
+            amount = STYLES[look.style].amounts[quality]
+            short = baby_hairs(model, amount, look, parting_of(model, look), rng)
+            return flyaways(self._cards, amount, look, rng).joined(short).in_order(model)
         return groom(model, model.normals, look, quality, rng)

@@ -20,11 +20,11 @@ from agentface.view.hair.strands import middle_of, sector_of, skin_round
 from agentface.view.hair.styles import REFERENCE_EYES, STYLES
 from agentface.view.hair.visible import before_skin
 
-_FROM, _ROWS = 1, 18
+_FROM, _ROWS = 0, 18
 """The column at which they start, for single locks frame the face; points along each."""
-_LAYER, _SHARE = 0.4, 0.97
+_LAYER_AT_ROOT, _LAYER, _SHARE = 0.70, 0.5, 0.97
 """Where between the skin and the outside of the hair the sheets lie, and how long they are beside the cards."""
-_LIGHT = 0.42
+_LIGHT_AT_ROOT, _LIGHT = 0.68, 0.42
 """How much light the cards let through to them."""
 _AT_PARTING, _RISE = 0.22, 0.050
 """How high hair lies where it starts, as a part of its thickness, and the metres over which it rises from there."""
@@ -35,7 +35,7 @@ _WIDTHS = 0.3, 1.7
 """Of the spaces between columns, in locks, as parts of their mean."""
 _UNEVEN = 0.05
 """The part by which the lengths of locks differ."""
-_LOWEST = 0.0018
+_LOWEST = 0.0034
 """Metres over the hull, which is smoother than the head."""
 _INSIDE_BELOW = 0.045
 """Metres over the centre: below it hair stands off forehead, face and neck, and is seen from inside too."""
@@ -96,16 +96,18 @@ def edge_shade(grown: list[Sheet], skin: Floats) -> Doubles:
 def _sheet(hull: Hull, look: HairLook, paths: Doubles, thickness: float, rng: np.random.Generator) -> Sheet:
     widths = rng.uniform(*_WIDTHS, len(paths) - 1)
     across = np.concatenate([[0.0], np.cumsum(widths)]) * LOCKS / widths.sum()
-    t = np.linspace(0.0, 1.0, _ROWS) ** 1.2
+    t = np.linspace(0.0, 1.0, _ROWS) ** 1.4
     uneven = np.interp(across, np.arange(LOCKS + 1), rng.uniform(0.0, 1.0, LOCKS + 1))
     points, along = resampled(paths, t, _SHARE * (1.0 - _UNEVEN * uneven))
     tucked = _TUCKED + (1.0 - _TUCKED) * smoothstep(0.0, 1.5, across)[:, None]
     risen = _AT_PARTING + (1.0 - _AT_PARTING) * np.sin(0.5 * np.pi * np.clip(along / _RISE, 0.0, 1.0))
-    height = np.maximum(thickness * _LAYER * tucked * risen, 0.001 + _LOWEST * smoothstep(0.0, 0.03, along))
+    near_root = 1.0 - smoothstep(0.03, 0.12, along)
+    layer = _LAYER + (_LAYER_AT_ROOT - _LAYER) * near_root
+    height = np.maximum(thickness * layer * tucked * risen, 0.001 + _LOWEST * smoothstep(0.0, 0.03, along))
     points = points + height[..., None] * hull.outward(points)
     if look.curl:
         points = points + 0.003 * look.curl * waves(hull, points, along, uneven)
-    light = np.broadcast_to(_LIGHT, along.shape)
+    light = _LIGHT + (_LIGHT_AT_ROOT - _LIGHT) * near_root
     places = np.stack(np.broadcast_arrays(across[:, None], t, light, uneven[:, None]), axis=2)
     return Sheet(points.astype(np.float32), places.astype(np.float32), hull.centre)
 
@@ -131,12 +133,12 @@ def sheets_mesh(grown: list[Sheet]) -> DrawnMesh:
 
 
 def hanging_first(triangles: Indices, places: Floats) -> tuple[Indices, int]:
-    """``triangles (T, 3)`` from the lowest up, and how many of them hang: these are seen from inside too.
+    """``triangles (T, 3)``, those first that hang, and how many do: these are seen from inside too.
 
     ``places (N, 3)`` m from the head's centre.
     """
-    lowest = places[triangles, 1].min(axis=1)
-    return triangles[np.argsort(lowest, kind="stable")], int((lowest < _INSIDE_BELOW).sum())
+    hanging = places[triangles, 1].min(axis=1) < _INSIDE_BELOW
+    return triangles[np.argsort(~hanging, kind="stable")], int(hanging.sum())
 
 
 class SheetArray:
