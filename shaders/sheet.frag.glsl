@@ -28,10 +28,10 @@ void main() {
     float along = strand.y, number = floor(strand.x), lock = 2.0 * (strand.x - number) - 1.0, own = scattered(3.0 * number + 1.0);
     float card = step(CARDS, strand.x);
     float hairs = mix(HAIRS, CARD_HAIRS, card) * strand.x + 1.5 * drift.r, here = scattered(floor(hairs));
-    float narrow = mix(1.05, 0.78, card * smoothstep(0.0, 0.2, along)) - (0.10 + 0.35 * own) * smoothstep(APART, 1.0, along);
+    float narrow = mix(1.4, 0.82, card * smoothstep(0.0, 0.2, along)) - (0.10 + 0.35 * own) * smoothstep(APART, 1.0, along);
     float edge = EDGE * (strand.x - CARDS * card) * (1.2 - along) + 0.8 * along;   // fewer hairs frame the face
     float wisp = hairs / WISP, ends = scattered(floor(wisp) + 7.0), last = 1.0 - TIP * ((0.3 + own) * ends * ends + 0.3 * own + 0.2 * here);
-    vec3 within = vec3(edge + 0.25 - here, (last - along) / (0.6 * TIP) - abs(2.0 * fract(wisp) - 1.0), narrow + mix(0.35, 0.40, card) * here - abs(lock));
+    vec3 within = vec3(edge + 0.25 - here, (last - along) / (0.6 * TIP) - abs(2.0 * fract(wisp) - 1.0), narrow + 0.32 * here - abs(lock));
     vec3 covered = clamp(0.5 + within / max(fwidth(within), 1e-4), 0.0, 1.0);
     float cover = min(covered.x, min(covered.y, covered.z));
     if (cover < least_cover) discard;

@@ -157,6 +157,6 @@ def _hair(model: HeadModel, grown: GrownHair) -> dict[str, Any]:
     }
     if grown.sheets:
         mesh = sheets_mesh(grown.sheets)
-        ordered, hanging = hanging_first(mesh.triangles, mesh.fields["place"] - grown.centre.astype(np.float32))
+        ordered, hanging = hanging_first(mesh, mesh.triangles, grown.centre)
         made["sheets"] = {"fields": mesh.fields, "triangles": ordered, "hanging": hanging, "least_cover": 0.02}
     return made

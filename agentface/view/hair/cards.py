@@ -15,7 +15,7 @@ from agentface.view.hair.ribbons import unit_rows
 from agentface.view.hair.sheets import Sheet, resampled
 from agentface.view.hair.styles import REFERENCE_EYES, STYLES
 
-_CARDS, _ROWS = 42, 20
+_CARDS, _ROWS = 40, 18
 """On each side; points along each."""
 _ACROSS = np.array([-1.0, 1.0])
 _TO_THE_FRONT = 1.25

@@ -19,7 +19,7 @@ _LOOSE, _LOOSE_AWAY = 0.18, 2.5
 """The part of them that leaves it farther, and how much farther."""
 _AT_FACE, _TO_THE_FRONT = 0.6, 5.0
 """The part of them that gathers at the face, and the exponent with which it does."""
-_BABIES, _BABY_LENGTH, _BABY_WIDTH = 0.5, (0.005, 0.013), 0.7
+_BABIES, _BABY_LENGTH, _BABY_WIDTH = 0.4, (0.005, 0.013), 0.7
 """Short hairs for each flyaway; metres; their width beside that of flyaways."""
 _ACROSS = 1.8
 """Half widths of a card within which they start."""

@@ -39,6 +39,8 @@ _LOWEST = 0.0034
 """Metres over the hull, which is smoother than the head."""
 _INSIDE_BELOW = 0.045
 """Metres over the centre: below it hair stands off forehead, face and neck, and is seen from inside too."""
+_BARE_INSIDE = 26.0
+"""Up to which number locks are seen from inside: the sheets' and those of the cards at the face."""
 _TUCKED = 0.2
 """How high the front edge lies, as a part of the hair's thickness."""
 _COVERAGE = 0x809E, 0x809F
@@ -132,13 +134,14 @@ def sheets_mesh(grown: list[Sheet]) -> DrawnMesh:
     return DrawnMesh.of(np.concatenate(triangles), place=place, along_rest=along_rest, facing=facing, sheet=sheet)
 
 
-def hanging_first(triangles: Indices, places: Floats) -> tuple[Indices, int]:
-    """``triangles (T, 3)``, those first that hang, and how many do: these are seen from inside too.
+def hanging_first(mesh: DrawnMesh, triangles: Indices, centre: Doubles) -> tuple[Indices, int]:
+    """``triangles (T, 3)``, those first that are seen from inside too, and how many are: what hangs beside face and neck.
 
-    ``places (N, 3)`` m from the head's centre.
+    ``centre (3,)`` m is the head's. Cards behind those at the face have a sheet inside of them.
     """
-    hanging = places[triangles, 1].min(axis=1) < _INSIDE_BELOW
-    return triangles[np.argsort(~hanging, kind="stable")], int(hanging.sum())
+    low = mesh.fields["place"][triangles, 1].min(axis=1) < centre[1] + _INSIDE_BELOW
+    seen = low & (mesh.fields["sheet"][triangles[:, 0], 0] < _BARE_INSIDE)
+    return triangles[np.argsort(~seen, kind="stable")], int(seen.sum())
 
 
 class SheetArray:
@@ -184,7 +187,7 @@ class SheetArray:
             triangles = self._mesh.triangles
             if sector is not None:
                 triangles = triangles[before_skin(places, self._skin, middle_of(sector))[triangles].any(axis=1)]
-            ordered, hanging = hanging_first(triangles, places)
+            ordered, hanging = hanging_first(self._mesh, triangles, self._centre)
             buffer = self._context.buffer(ordered.tobytes())
             self._arrays[sector] = self._context.vertex_array(self._program, self._layout, buffer), 3 * hanging
         return self._arrays[sector]
