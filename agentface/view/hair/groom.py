@@ -47,7 +47,7 @@ def groom(model: HeadModel, normals: Floats, look: HairLook, quality: str, rng: 
     line = Hairline(model, look.hairline)
     if look.style == "cropped":
         roots = HairRoots.drawn(model, normals, line, amount.hairs, rng)
-        return crop(roots, style, amount, look, rng).in_order(model)
+        return crop(roots, line, style, amount, look, rng).in_order(model)
     hull = Hull(model, ears=style.over_ears)
     # the guides are the same for every quality, so that they show the same hair
     starts = HairRoots.drawn(model, normals, line, _GUIDES, np.random.default_rng(_GUIDE_SEED))
