@@ -16,7 +16,7 @@ void main() {
     float soft = smoothstep(0.05, 0.95, edge + 0.9 * (fine - 0.5) * (1.0 - edge));
     float dense = sqrt(edge), dots = dense * smoothstep(0.86 - dense, 1.26 - dense, abs(2.0 * fract(3.0 * fine + 2.0 * coil) - 1.0));   // stubble, denser and denser
     float alpha = mix(soft, dots, coils);
-    vec3 hair = lit * mix(1.0, 0.70, coils) * mix(0.75 + 1.1 * fine, (0.10 + 3.2 * coil * coil * (0.3 + fine)) * (0.5 + grain.r), coils);
+    vec3 hair = 0.70 * lit * mix(0.75 + 1.1 * fine, (0.10 + 3.2 * coil * coil * (0.3 + fine)) * (0.5 + grain.r), coils);
     float way = clamp((parting.y - rest_position.z) / max(parting.y - parting.w, 1e-4), 0.0, 1.0);
     float off = abs(rest_position.x - mix(parting.x, parting.z, way));
     float bare = smoothstep(BARE, 0.2 * BARE, off) * step(parting.w, rest_position.z) * (0.35 + 0.4 * fine);

@@ -31,7 +31,7 @@ _LOW = 0.45
 """How high the lowest lie, as a part of the hair's thickness."""
 _GOLDEN = 0.618
 """Turns from the height of a card to the next one's, so that neighbours lie apart."""
-_APART = 0.0010
+_APART = 0.0015
 """Metres by which the highest lie over the lowest from the root on, so that none cut through others."""
 _WISPS, _WISP_WIDTH, _WISP_DRIFT = 4, 0.4, 1.8
 """Every how many cards at the face one is a wisp; how wide, and how far off its way, beside the others."""
@@ -60,7 +60,7 @@ def _row(hull: Hull, look: HairLook, paths: Doubles, thickness: float, rng: np.r
     count = _CARDS
     place = (np.arange(count) + rng.uniform(0.0, 0.7, count)) / count
     column = (len(paths) - 1) * place**_TO_THE_FRONT
-    t = np.linspace(0.0, 1.0, _ROWS) ** 1.4
+    t = np.linspace(0.0, 1.0, _ROWS) ** 1.15
     share = _SHORTEST + (1.04 - _SHORTEST) * rng.random(count) ** 0.6
     middle, along = resampled(_between(paths, column), t, share)
     gap = len(paths) / count * _TO_THE_FRONT * place ** (_TO_THE_FRONT - 1.0)
@@ -85,7 +85,8 @@ def _lying(
     count = len(middle)
     risen = _AT_PARTING + (1.0 - _AT_PARTING) * np.sin(0.5 * np.pi * np.clip(along / _RISE, 0.0, 1.0))
     height = thickness * (1.0 - (1.0 - _LOW) * (1.0 - layer) * smoothstep(0.02, 0.15, along)) * risen
-    height = height + _APART * layer * smoothstep(0.0, 0.02, along)
+    apart = _APART * layer * smoothstep(0.0, 0.015, along)
+    height = height + apart
     height = height - _TURNED_IN * rng.random((count, 1)) ** 2 * smoothstep(0.75, 1.0, t) ** 1.5
     out = hull.outward(middle)
     across = unit_rows(np.cross(np.gradient(middle, axis=1), out))
@@ -94,7 +95,7 @@ def _lying(
     sway = look.curl * _WAVE * rng.uniform(0.4, 1.0, (count, 1)) * grown * np.sin(turn)
     sway = sway + drift[:, None] * t**1.5
     height = height + 0.35 * look.curl * _WAVE * grown * np.cos(turn)
-    least = 0.002 + 0.0035 * smoothstep(0.0, 0.03, along)
+    least = 0.002 + 0.0035 * smoothstep(0.0, 0.03, along) + apart
     points = hull.push_out(middle + sway[..., None] * across + height[..., None] * out, least)
     return smoothed(points, 1)
 

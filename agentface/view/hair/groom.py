@@ -29,7 +29,7 @@ _GUIDES, _GUIDE_POINTS = 420, 60
 _GUIDE_SEED = 7
 _WAVE = 0.090
 """Metres from wave to wave of wavy hair."""
-_LOCKS_BEHIND = 0.004
+_LOCKS_BEHIND = 0.001
 """Metres behind the hairline where locks begin; single hairs stand before them."""
 _HAIRS_ELSEWHERE = 0.05
 _STRAY = 0.16

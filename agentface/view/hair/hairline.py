@@ -27,7 +27,7 @@ _ALL_ROUND = 0.04
 _TAPER, _TAPER_FROM_DEG, _TAPER_TO_DEG = 0.028, 25.0, 66.0
 """Metres over which a crop grows from nothing at the sides and the nape; from which turn on, and where wholly."""
 _AXIS_Z = -0.69
-_SOFT = 0.006
+_SOFT = 0.003
 """Metres over which hair grows denser behind the hairline."""
 _SHADE = {"cropped": 0.15, "swept": 0.45, "bob": 0.60, "bun": 0.35}
 _SCALP_TINT, _SOFT_FRONT = 0.9, 0.016
