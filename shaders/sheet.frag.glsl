@@ -7,7 +7,7 @@ out vec4 colour;           // its opacity becomes coverage of the samples
 uniform float least_cover; // of a pixel, that is drawn
 
 const float HAIRS = 26.0;      // that are seen in a lock
-const float CARDS = 20.0;      // the first number of a lock that is a card
+const float CARDS = 14.0;      // the first number of a lock that is a card
 const float CARD_HAIRS = 15.0; // that are seen in a card
 const float WISP = 3.5;        // hairs that end together in a point
 const float TIP = 0.11;        // of the length, over which hairs end

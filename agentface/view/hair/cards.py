@@ -12,7 +12,7 @@ from agentface.view.hair.drape import draped
 from agentface.view.hair.groom import smoothed
 from agentface.view.hair.hull import Hull
 from agentface.view.hair.ribbons import unit_rows
-from agentface.view.hair.sheets import Sheet, resampled
+from agentface.view.hair.sheets import FIRST_CARD, Sheet, resampled
 from agentface.view.hair.styles import REFERENCE_EYES, STYLES
 
 _CARDS, _ROWS = 40, 18
@@ -23,8 +23,8 @@ _TO_THE_FRONT = 1.25
 _OVERLAP, _NARROWEST = 1.7, 0.0022
 """A card's width in spaces between cards; its least half width, metres."""
 _SHORTEST = 0.86
-_FIRST_NUMBER, _NUMBERS, _OWN = 20, 24, 40.0
-"""What the shader draws hairs by: far from the numbers of the sheets, and few enough for its arithmetic."""
+_NUMBERS, _OWN = 24, 40.0
+"""What the shader draws hairs by, few enough for its arithmetic."""
 _AT_PARTING, _RISE = 0.22, 0.050
 """How high cards lie where they start, as a part of the hair's thickness, and the metres over which they rise."""
 _LOW = 0.45
@@ -119,7 +119,7 @@ def _woven(
     edges = edges + rise[..., None] * hull.outward(edges)
     grown = []
     for k, grid in enumerate(edges):
-        number = _FIRST_NUMBER + (1 + (k - 1) % _NUMBERS if k else 0) + 0.5 + 0.498 * _ACROSS
+        number = FIRST_CARD + (1 + (k - 1) % _NUMBERS if k else 0) + 0.5 + 0.498 * _ACROSS
         places = np.stack(np.broadcast_arrays(number[:, None], t, light[k], own[k]), axis=2)
         grown.append(Sheet(grid.astype(np.float32), places.astype(np.float32), hull.centre))
     return grown

@@ -53,6 +53,11 @@ class GrownHair:
         return sorted(self._cards + self._beneath, key=lambda sheet: -float(sheet.places[..., 2].max()))
 
     @property
+    def layers(self) -> list[list[Sheet]]:
+        """The cards, and the sheets below them; none of hair that is not long."""
+        return [layer for layer in (self._cards, self._beneath) if layer]
+
+    @property
     def gloss(self) -> float:
         """How much it shines, 0..1."""
         return _GLOSS[self._look.style]

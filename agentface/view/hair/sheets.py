@@ -30,7 +30,8 @@ _AT_PARTING, _RISE = 0.22, 0.050
 """How high hair lies where it starts, as a part of its thickness, and the metres over which it rises from there."""
 _EDGE_SHADE, _EDGE_REACH = 0.6, 0.011
 """How much light the front edge keeps off the skin below it, and within how many metres."""
-LOCKS = 13
+LOCKS, FIRST_CARD, PAINTED = 13, 14, 26
+"""Of a sheet; the number of the first card; up to which number ``shaders/sheet_flat.vert.glsl`` paints."""
 _WIDTHS = 0.3, 1.7
 """Of the spaces between columns, in locks, as parts of their mean."""
 _UNEVEN = 0.05
@@ -39,7 +40,7 @@ _LOWEST = 0.0034
 """Metres over the hull, which is smoother than the head."""
 _INSIDE_BELOW = 0.045
 """Metres over the centre: below it hair stands off forehead, face and neck, and is seen from inside too."""
-_BARE_INSIDE = 26.0
+_BARE_INSIDE = 20.0
 """Up to which number locks are seen from inside: the sheets' and those of the cards at the face."""
 _TUCKED = 0.2
 """How high the front edge lies, as a part of the hair's thickness."""
@@ -142,6 +143,13 @@ def hanging_first(mesh: DrawnMesh, triangles: Indices, centre: Doubles) -> tuple
     low = mesh.fields["place"][triangles, 1].min(axis=1) < centre[1] + _INSIDE_BELOW
     seen = low & (mesh.fields["sheet"][triangles[:, 0], 0] < _BARE_INSIDE)
     return triangles[np.argsort(~seen, kind="stable")], int(seen.sum())
+
+
+def sheet_places(places: Floats) -> Floats:
+    """``(N, 2)`` texture coordinates of ``places (N, 4)`` in the picture that ``shaders/sheet_flat.vert.glsl`` paints."""
+    number, along = places[:, 0], places[:, 1]
+    card = FIRST_CARD + (number - FIRST_CARD) % (PAINTED - FIRST_CARD)
+    return np.stack([np.where(number < FIRST_CARD, number, card) / PAINTED, along], axis=1).astype(np.float32)
 
 
 class SheetArray:
