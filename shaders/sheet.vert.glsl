@@ -17,10 +17,12 @@ centroid out vec3 drift;         // how hairs wander, gaps deepen and light chan
 uniform vec3 hair_colour;
 uniform float gloss;
 
+const float TURNED = -0.35;   // cosine; at its outline hair is still seen from outside
+
 void main() {
     vec3 placed = (head * vec4(place, 1.0)).xyz, along = mat3(head) * along_rest, n = mat3(head) * facing;
     vec3 view = normalize(eye_point.xyz - placed);
-    n = dot(n, view) < 0.0 ? -n : n;
+    n = dot(n, view) < TURNED ? -n : n;
     float own = fract(sheet.w * 3.7);
     vec3 base = hair_colour * mix(0.9, 1.8, smoothstep(0.15, 1.0, sheet.y)) * (0.85 + 0.3 * fract(sheet.w * 5.3));
     HairLight light = hair_lights(base, along, n, view, gloss, 0.30 * (own - 0.5), sheet.z);

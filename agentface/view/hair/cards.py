@@ -12,17 +12,18 @@ from agentface.view.hair.drape import draped
 from agentface.view.hair.groom import smoothed
 from agentface.view.hair.hull import Hull
 from agentface.view.hair.ribbons import unit_rows
-from agentface.view.hair.sheets import FIRST_CARD, Sheet, resampled
+from agentface.view.hair.sheets import FIRST_CARD, ROOTWARD, Sheet, resampled
 from agentface.view.hair.styles import REFERENCE_EYES, STYLES
 
-_CARDS, _ROWS = 40, 18
+_CARDS, _ROWS = 36, 20
 """On each side; points along each."""
 _ACROSS = np.array([-1.0, 1.0])
 _TO_THE_FRONT = 1.25
 """The exponent with which they gather at the face."""
 _OVERLAP, _NARROWEST = 1.7, 0.0022
 """A card's width in spaces between cards; its least half width, metres."""
-_SHORTEST = 0.86
+_SHORTEST, _ALIKE = 0.84, 0.35
+"""How long the shortest is, and up to where along it none is shorter than its neighbours: parts of the whole length."""
 _NUMBERS, _OWN = 24, 40.0
 """What the shader draws hairs by, few enough for its arithmetic."""
 _AT_PARTING, _RISE = 0.22, 0.050
@@ -60,12 +61,17 @@ def _row(hull: Hull, look: HairLook, paths: Doubles, thickness: float, rng: np.r
     count = _CARDS
     place = (np.arange(count) + rng.uniform(0.0, 0.7, count)) / count
     column = (len(paths) - 1) * place**_TO_THE_FRONT
-    t = np.linspace(0.0, 1.0, _ROWS) ** 1.15
+    t = np.linspace(0.0, 1.0, _ROWS) ** ROOTWARD
     share = _SHORTEST + (1.04 - _SHORTEST) * rng.random(count) ** 0.6
-    middle, along = resampled(_between(paths, column), t, share)
+    # side by side as far as they lie on the head, so that they do not cut through each other
+    lines = _between(paths, column)
+    alike = np.median(lengths := _lengths(lines)) / lengths[:, None]
+    parts = alike * t + (share[:, None] - alike) * np.clip((t - _ALIKE) / (1.0 - _ALIKE), 0.0, 1.0) ** 1.5
+    middle, along = resampled(lines, parts)
     gap = len(paths) / count * _TO_THE_FRONT * place ** (_TO_THE_FRONT - 1.0)
-    aside = resampled(_between(paths, np.minimum(column + 1.0, len(paths) - 1.0)), t, share)[0]
-    aside -= resampled(_between(paths, np.maximum(column - 1.0, 0.0)), t, share)[0]
+    aside = resampled(_between(paths, np.minimum(column + 1.0, len(paths) - 1.0)), parts)[0]
+    aside -= resampled(_between(paths, np.maximum(column - 1.0, 0.0)), parts)[0]
+    aside = _sheared(aside, unit_rows(np.gradient(middle, axis=1)))
     half = 0.25 * _OVERLAP * gap[:, None] * np.linalg.norm(aside, axis=2) * rng.uniform(0.7, 1.35, (count, 1))
     half = np.maximum(half, _NARROWEST) * (1.0 - 0.40 * smoothstep(0.55, 1.0, t))
     wisp = (place < _AT_FACE) & (np.arange(count) % _WISPS == _WISPS - 1)
@@ -95,7 +101,7 @@ def _lying(
     sway = look.curl * _WAVE * rng.uniform(0.4, 1.0, (count, 1)) * grown * np.sin(turn)
     sway = sway + drift[:, None] * t**1.5
     height = height + 0.35 * look.curl * _WAVE * grown * np.cos(turn)
-    least = 0.002 + 0.0035 * smoothstep(0.0, 0.03, along) + apart
+    least = 0.002 + 0.0045 * smoothstep(0.0, 0.03, along) + apart
     points = hull.push_out(middle + sway[..., None] * across + height[..., None] * out, least)
     return smoothed(points, 1)
 
@@ -123,6 +129,19 @@ def _woven(
         places = np.stack(np.broadcast_arrays(number[:, None], t, light[k], own[k]), axis=2)
         grown.append(Sheet(grid.astype(np.float32), places.astype(np.float32), hull.centre))
     return grown
+
+
+def _lengths(lines: Doubles) -> Doubles:
+    """``(N,)`` m: of ``lines (N, K, 3)``."""
+    return np.asarray(np.linalg.norm(np.diff(lines, axis=1), axis=2).sum(axis=1))
+
+
+def _sheared(aside: Doubles, along: Doubles) -> Doubles:
+    """``aside (..., 3)`` with no more of it ``along (..., 3)`` the hair than across."""
+    part = (aside * along).sum(-1, keepdims=True)
+    across = aside - part * along
+    most = np.linalg.norm(across, axis=-1, keepdims=True)
+    return np.asarray(across + np.clip(part, -most, most) * along)
 
 
 def _between(paths: Doubles, column: Doubles) -> Doubles:

@@ -30,13 +30,15 @@ _AT_PARTING, _RISE = 0.22, 0.050
 """How high hair lies where it starts, as a part of its thickness, and the metres over which it rises from there."""
 _EDGE_SHADE, _EDGE_REACH = 0.6, 0.011
 """How much light the front edge keeps off the skin below it, and within how many metres."""
+ROOTWARD = 1.25
+"""The exponent with which the points along hair gather at its root."""
 LOCKS, FIRST_CARD, PAINTED = 13, 14, 26
 """Of a sheet; the number of the first card; up to which number ``shaders/sheet_flat.vert.glsl`` paints."""
 _WIDTHS = 0.3, 1.7
 """Of the spaces between columns, in locks, as parts of their mean."""
 _UNEVEN = 0.05
 """The part by which the lengths of locks differ."""
-_LOWEST = 0.0034
+_LOWEST = 0.0042
 """Metres over the hull, which is smoother than the head."""
 _INSIDE_BELOW = 0.045
 """Metres over the centre: below it hair stands off forehead, face and neck, and is seen from inside too."""
@@ -99,9 +101,9 @@ def edge_shade(grown: list[Sheet], skin: Floats) -> Doubles:
 def _sheet(hull: Hull, look: HairLook, paths: Doubles, thickness: float, rng: np.random.Generator) -> Sheet:
     widths = rng.uniform(*_WIDTHS, len(paths) - 1)
     across = np.concatenate([[0.0], np.cumsum(widths)]) * LOCKS / widths.sum()
-    t = np.linspace(0.0, 1.0, _ROWS) ** 1.4
+    t = np.linspace(0.0, 1.0, _ROWS) ** ROOTWARD
     uneven = np.interp(across, np.arange(LOCKS + 1), rng.uniform(0.0, 1.0, LOCKS + 1))
-    points, along = resampled(paths, t, _SHARE * (1.0 - _UNEVEN * uneven))
+    points, along = resampled(paths, _SHARE * (1.0 - _UNEVEN * uneven)[:, None] * t)
     tucked = _TUCKED + (1.0 - _TUCKED) * smoothstep(0.0, 1.5, across)[:, None]
     risen = _AT_PARTING + (1.0 - _AT_PARTING) * np.sin(0.5 * np.pi * np.clip(along / _RISE, 0.0, 1.0))
     near_root = 1.0 - smoothstep(0.03, 0.12, along)
@@ -115,11 +117,11 @@ def _sheet(hull: Hull, look: HairLook, paths: Doubles, thickness: float, rng: np
     return Sheet(points.astype(np.float32), places.astype(np.float32), hull.centre)
 
 
-def resampled(paths: Doubles, t: Doubles, share: Doubles) -> tuple[Doubles, Doubles]:
-    """``(C, R, 3)`` m and ``(C, R)`` m: points at parts ``t`` of each path's length times ``share``; the lengths."""
+def resampled(paths: Doubles, parts: Doubles) -> tuple[Doubles, Doubles]:
+    """``(C, R, 3)`` m and ``(C, R)`` m: points at ``parts (C, R)`` of each path's length; the lengths."""
     steps = np.linalg.norm(np.diff(paths, axis=1), axis=2)
     way = np.concatenate([np.zeros((len(paths), 1)), np.cumsum(steps, axis=1)], axis=1)
-    along = way[:, -1:] * share[:, None] * t
+    along = way[:, -1:] * parts
     points = np.empty((*along.shape, 3))
     for column, (line, known, wanted) in enumerate(zip(paths, way, along, strict=True)):
         points[column] = np.stack([np.interp(wanted, known, line[:, axis]) for axis in range(3)], axis=1)
