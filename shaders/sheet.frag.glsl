@@ -18,7 +18,7 @@ float scattered(float number) {
     return fract(0.618034 * number + 0.37 * floor(strand.w) + 0.11 * fract(0.1415 * number * number));
 }
 
-// From one hair to the next, 0..1.
+// From one strand of hairs to the next, 0..1.
 float varied(float hairs) {
     float low = floor(hairs);
     return mix(scattered(low), scattered(low + 1.0), smoothstep(0.0, 1.0, hairs - low));
@@ -35,7 +35,7 @@ void main() {
     vec3 covered = clamp(0.5 + within / max(fwidth(within), 1e-4), 0.0, 1.0);
     float cover = min(covered.x, min(covered.y, covered.z));
     if (cover < least_cover) discard;
-    float strands = 0.55 * varied(0.31 * hairs) + 0.45 * varied(1.7 * hairs);
+    float strands = 0.6 * varied(0.43 * hairs) + 0.4 * here;
     float gap = 1.0 - (0.10 + 0.30 * own) * smoothstep(0.2, 1.0, abs(lock)) * (0.9 + drift.g);
     float light = (0.78 + 0.44 * strands + 0.22 * drift.b) * gap;
     colour = vec4(mix(dull, bright, strands * strands * gap) * light, least_cover < 0.5 ? cover : 1.0);   // with one sample a pixel there is hair or none

@@ -101,7 +101,7 @@ def _lying(
     sway = look.curl * _WAVE * rng.uniform(0.4, 1.0, (count, 1)) * grown * np.sin(turn)
     sway = sway + drift[:, None] * t**1.5
     height = height + 0.35 * look.curl * _WAVE * grown * np.cos(turn)
-    least = 0.002 + 0.0045 * smoothstep(0.0, 0.03, along) + apart
+    least = 0.002 + 0.0055 * smoothstep(0.0, 0.03, along) + apart
     points = hull.push_out(middle + sway[..., None] * across + height[..., None] * out, least)
     return smoothed(points, 1)
 

@@ -20,9 +20,9 @@ from agentface.view.hair.strands import middle_of, sector_of, skin_round
 from agentface.view.hair.styles import REFERENCE_EYES, STYLES
 from agentface.view.hair.visible import before_skin
 
-_FROM, _ROWS = 0, 18
-"""The column at which they start, for single locks frame the face; points along each."""
-_LAYER_AT_ROOT, _LAYER, _SHARE = 0.70, 0.5, 0.97
+_EVERY, _ROWS = 3, 18
+"""Which of the columns they have; points along each."""
+_LAYER_AT_ROOT, _LAYER, _SHARE = 0.66, 0.42, 0.97
 """Where between the skin and the outside of the hair the sheets lie, and how long they are beside the cards."""
 _LIGHT_AT_ROOT, _LIGHT = 0.68, 0.42
 """How much light the cards let through to them."""
@@ -38,7 +38,7 @@ _WIDTHS = 0.3, 1.7
 """Of the spaces between columns, in locks, as parts of their mean."""
 _UNEVEN = 0.05
 """The part by which the lengths of locks differ."""
-_LOWEST = 0.0042
+_LOWEST = 0.0045
 """Metres over the hull, which is smoother than the head."""
 _INSIDE_BELOW = 0.045
 """Metres over the centre: below it hair stands off forehead, face and neck, and is seen from inside too."""
@@ -85,7 +85,7 @@ def sheets(model: HeadModel, look: HairLook, hull: Hull, rng: np.random.Generato
     style = STYLES[look.style]
     thickness = style.thickness * look.volume * model.landmarks.eye_separation / REFERENCE_EYES
     return [
-        _sheet(hull, look, draped(model, look, hull, 1.0 if side == SIDES[0] else -1.0)[_FROM::2], thickness, rng)
+        _sheet(hull, look, draped(model, look, hull, 1.0 if side == SIDES[0] else -1.0)[::_EVERY], thickness, rng)
         for side in SIDES
     ]
 
@@ -108,8 +108,8 @@ def _sheet(hull: Hull, look: HairLook, paths: Doubles, thickness: float, rng: np
     risen = _AT_PARTING + (1.0 - _AT_PARTING) * np.sin(0.5 * np.pi * np.clip(along / _RISE, 0.0, 1.0))
     near_root = 1.0 - smoothstep(0.03, 0.12, along)
     layer = _LAYER + (_LAYER_AT_ROOT - _LAYER) * near_root
-    height = np.maximum(thickness * layer * tucked * risen, 0.001 + _LOWEST * smoothstep(0.0, 0.03, along))
-    points = points + height[..., None] * hull.outward(points)
+    points = points + (thickness * layer * tucked * risen)[..., None] * hull.outward(points)
+    points = hull.push_out(points, 0.001 + _LOWEST * smoothstep(0.0, 0.03, along))
     if look.curl:
         points = points + 0.003 * look.curl * waves(hull, points, along, uneven)
     light = _LIGHT + (_LIGHT_AT_ROOT - _LIGHT) * near_root
