@@ -28,7 +28,8 @@ from agentface.view.gl.uniforms import light_rows, shadow_projection, unit
 from agentface.view.hair.cap import solid_first
 from agentface.view.hair.grown import GrownHair
 from agentface.view.hair.head_hair import NARROWEST, STREAKS
-from agentface.view.hair.sheets import hanging_first, sheets_mesh
+from agentface.view.hair.sheet_array import hanging_first
+from agentface.view.hair.sheets import sheets_mesh
 from agentface.view.hair.strands import LIFT
 from agentface.view.parts.anchored import eye_linings
 from agentface.view.parts.mouth import PARTS, SHADED, MouthOpening, mouth_mesh

@@ -22,7 +22,9 @@ _IN_A_CLUMP, _CLUMPED, _CLUMP_TINT = 9, 0.65, (0.9, 3.0)
 _BUN_SHARE = 0.35
 
 
-def crop(roots: HairRoots, line: Hairline, style: Style, amount: Amount, look: HairLook, rng: np.random.Generator) -> StrandSet:
+def crop(
+    roots: HairRoots, line: Hairline, style: Style, amount: Amount, look: HairLook, rng: np.random.Generator
+) -> StrandSet:
     """Small coils that stand up from the scalp, wider with ``look.curl``."""
     count, t = len(roots), np.linspace(0.0, 1.0, amount.points)
     layer = rng.random(count)

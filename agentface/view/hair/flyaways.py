@@ -1,4 +1,4 @@
-"""Single hairs beside long hair: those that leave their card, most of them at the face, and short ones at the hairline."""
+"""Single hairs beside long hair: those that leave their card, most at the face, and short ones at the hairline."""
 
 from __future__ import annotations
 
@@ -49,9 +49,7 @@ def flyaways(cards: list[Sheet], amount: Amount, look: HairLook, rng: np.random.
                   np.ones(count), np.ones(count))  # fmt: skip
 
 
-def baby_hairs(
-    model: HeadModel, amount: Amount, look: HairLook, beside: float, rng: np.random.Generator
-) -> StrandSet:
+def baby_hairs(model: HeadModel, amount: Amount, look: HairLook, beside: float, rng: np.random.Generator) -> StrandSet:
     """Short hairs of the hairline, combed away from a parting ``beside`` metres from the middle of the head."""
     line = Hairline(model, look.hairline)
     roots = HairRoots.drawn(model, model.normals, line, round(_BABIES * amount.hairs), rng, elsewhere=0.0)

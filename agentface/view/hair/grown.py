@@ -24,7 +24,7 @@ from agentface.view.hair.styles import PARTED, STYLES, parting_of
 from agentface.view.parts.anchored import Anchored
 
 _T = TypeVar("_T")
-_SEED = 20
+_SEED, _LONG_SEED = 20, 22
 _GLOSS = {"cropped": 0.25, "swept": 0.8, "bob": 0.9, "bun": 0.9}
 _NO_PARTING = 1.0, 1.0, 1.0, 1.0
 """The uniform ``parting`` of ``shaders/cap.frag.glsl``, far from the head."""
@@ -85,7 +85,7 @@ class GrownHair:
     def _grow_sheets(self) -> tuple[Doubles, list[Sheet], list[Sheet]]:
         hull = Hull(self._model, ears=True)
         line = parting_line(self._model, self._look, hull)
-        rng = np.random.default_rng(_SEED)
+        rng = np.random.default_rng(_LONG_SEED)
         grown = cards(self._model, self._look, hull, rng), sheets(self._model, self._look, hull, rng)
         return line, *grown
 

@@ -139,7 +139,8 @@ def hidden(model: HeadModel, line: Hairline, look: HairLook) -> Doubles:
     y, z = model.vertices[:, 1], model.vertices[:, 2]
     bottom = look.length * float(model.landmarks["menton"][1])
     behind = np.clip((0.05 * line.unit - z) / (0.35 * line.unit), 0, 1) * np.clip((y - bottom) / 0.03, 0, 1)
-    return np.maximum(scalp, 0.9 * behind * (y < 0.6 * line.unit))
+    ears = smoothstep(0.5, 0.95, model.material[:, 3])
+    return np.maximum(np.maximum(scalp, ears), 0.9 * behind * (y < 0.6 * line.unit))
 
 
 def hair_shade(model: HeadModel, look: HairLook) -> Doubles:

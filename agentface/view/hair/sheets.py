@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
@@ -16,9 +15,7 @@ from agentface.view.hair.drape import draped
 from agentface.view.hair.groom import waves
 from agentface.view.hair.hull import Hull
 from agentface.view.hair.ribbons import unit_rows
-from agentface.view.hair.strands import middle_of, sector_of, skin_round
 from agentface.view.hair.styles import REFERENCE_EYES, STYLES
-from agentface.view.hair.visible import before_skin
 
 _EVERY, _ROWS = 3, 18
 """Which of the columns they have; points along each."""
@@ -28,7 +25,7 @@ _LIGHT_AT_ROOT, _LIGHT = 0.68, 0.42
 """How much light the cards let through to them."""
 _AT_PARTING, _RISE = 0.22, 0.050
 """How high hair lies where it starts, as a part of its thickness, and the metres over which it rises from there."""
-_EDGE_SHADE, _EDGE_REACH = 0.6, 0.011
+_EDGE_SHADE, _EDGE_REACH = 0.7, 0.013
 """How much light the front edge keeps off the skin below it, and within how many metres."""
 ROOTWARD = 1.25
 """The exponent with which the points along hair gather at its root."""
@@ -40,14 +37,8 @@ _UNEVEN = 0.05
 """The part by which the lengths of locks differ."""
 _LOWEST = 0.0045
 """Metres over the hull, which is smoother than the head."""
-_INSIDE_BELOW = 0.045
-"""Metres over the centre: below it hair stands off forehead, face and neck, and is seen from inside too."""
-_BARE_INSIDE = 20.0
-"""Up to which number locks are seen from inside: the sheets' and those of the cards at the face."""
 _TUCKED = 0.2
 """How high the front edge lies, as a part of the hair's thickness."""
-_COVERAGE = 0x809E, 0x809F
-"""GL_SAMPLE_ALPHA_TO_COVERAGE, GL_SAMPLE_ALPHA_TO_ONE."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -137,67 +128,8 @@ def sheets_mesh(grown: list[Sheet]) -> DrawnMesh:
     return DrawnMesh.of(np.concatenate(triangles), place=place, along_rest=along_rest, facing=facing, sheet=sheet)
 
 
-def hanging_first(mesh: DrawnMesh, triangles: Indices, centre: Doubles) -> tuple[Indices, int]:
-    """``triangles (T, 3)``, those first that are seen from inside too, and how many are: what hangs beside face and neck.
-
-    ``centre (3,)`` m is the head's. Cards behind those at the face have a sheet inside of them.
-    """
-    low = mesh.fields["place"][triangles, 1].min(axis=1) < centre[1] + _INSIDE_BELOW
-    seen = low & (mesh.fields["sheet"][triangles[:, 0], 0] < _BARE_INSIDE)
-    return triangles[np.argsort(~seen, kind="stable")], int(seen.sum())
-
-
 def sheet_places(places: Floats) -> Floats:
-    """``(N, 2)`` texture coordinates of ``places (N, 4)`` in the picture that ``shaders/sheet_flat.vert.glsl`` paints."""
+    """``(N, 2)`` texture coordinates of ``places (N, 4)`` in what ``shaders/sheet_flat.vert.glsl`` paints."""
     number, along = places[:, 0], places[:, 1]
     card = FIRST_CARD + (number - FIRST_CARD) % (PAINTED - FIRST_CARD)
     return np.stack([np.where(number < FIRST_CARD, number, card) / PAINTED, along], axis=1).astype(np.float32)
-
-
-class SheetArray:
-    """Sheets on the GPU; they turn with the head."""
-
-    def __init__(self, context: Any, program: Any, grown: list[Sheet], model: HeadModel, centre: Doubles) -> None:
-        """``centre`` m: hair well above it has the head behind it and is seen from outside only."""
-        self._context, self._program, self._centre = context, program, centre
-        self._mesh = sheets_mesh(grown)
-        self._layout = self._mesh.layout(context, program)
-        self._skin = skin_round(model, centre)
-        self._arrays: dict[tuple[int, int, int] | None, tuple[Any, int]] = {}
-        self._drawn: tuple[Any, int] = self._seen_from(None)
-        self._flags: tuple[int, ...] = ()
-
-    def draw(self, eye: Doubles, *, fine: bool) -> None:
-        """Draw what ``eye``, in the model's axes, sees from outside; ``fine``: into several samples a pixel."""
-        self._program["least_cover"].value = 0.02 if fine else 0.5
-        self._flags = _COVERAGE if fine else ()
-        self._drawn = self._seen_from(sector_of(eye - self._centre))
-        self._draw("back", self._drawn[0].vertices)
-
-    def draw_inside(self) -> None:
-        """Draw what the eye of the last ``draw`` sees from inside, after the skin: hair beside face and neck."""
-        self._draw("front", self._drawn[1])
-
-    def _draw(self, culled: str, count: int) -> None:
-        context, (array, _) = self._context, self._drawn
-        context.cull_face = culled
-        context.enable(context.CULL_FACE)
-        for flag in self._flags:
-            context.enable_direct(flag)
-        array.render(vertices=count)
-        for flag in self._flags:
-            context.disable_direct(flag)
-        context.disable(context.CULL_FACE)
-        context.cull_face = "back"
-
-    def _seen_from(self, sector: tuple[int, int, int] | None) -> tuple[Any, int]:
-        """An array of what may be seen from a sector, and how many of its indices hang: these are seen from inside."""
-        if sector not in self._arrays:
-            places = self._mesh.fields["place"] - self._centre.astype(np.float32)
-            triangles = self._mesh.triangles
-            if sector is not None:
-                triangles = triangles[before_skin(places, self._skin, middle_of(sector))[triangles].any(axis=1)]
-            ordered, hanging = hanging_first(self._mesh, triangles, self._centre)
-            buffer = self._context.buffer(ordered.tobytes())
-            self._arrays[sector] = self._context.vertex_array(self._program, self._layout, buffer), 3 * hanging
-        return self._arrays[sector]
