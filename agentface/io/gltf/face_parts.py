@@ -219,11 +219,11 @@ def _head_hair(model: HeadModel, grown: GrownHair) -> list[FacePart]:
     )  # fmt: skip
     for number, layer in enumerate(grown.layers):
         mesh = sheets_mesh(layer)
-        place, facing, sheet = (mesh.fields[name] for name in ("place", "facing", "sheet"))
+        place, outward, sheet = (mesh.fields[name] for name in ("place", "facing", "sheet"))
         light = np.repeat(np.clip(sheet[:, 2:3], 0.0, 1.0), 3, axis=1)
         parts.append(
             FacePart(
-                f"hair_sheet_{number}", "hair_sheet", "head", mesh.triangles, _still((place, facing)),
+                f"hair_sheet_{number}", "hair_sheet", "head", mesh.triangles, _still((place, outward)),
                 sheet_places(sheet), light,
             )
         )  # fmt: skip
