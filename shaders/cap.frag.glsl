@@ -11,10 +11,12 @@ uniform vec4 parting;   // x and z where it begins, x and z where it ends, metre
 const float BARE = 0.0009;   // metres to both sides of the parting
 
 void main() {
-    vec4 grain = noise(rest_position * mix(vec3(22.0, 120.0, 170.0), vec3(61.0), coils));   // hair, combed to the sides
+    vec4 grain = noise(rest_position * mix(vec3(22.0, 120.0, 170.0), vec3(67.0), coils));   // hair, combed to the sides
     float fine = grain.b, coil = 1.0 - abs(2.0 * grain.a - 1.0);
-    float alpha = smoothstep(0.05, 0.95, edge + 0.9 * (fine - 0.5) * (1.0 - edge));
-    vec3 hair = lit * mix(1.0, 0.70, coils) * mix(0.75 + 1.1 * fine, 0.25 + 2.6 * coil * coil * (0.5 + fine), coils);
+    float soft = smoothstep(0.05, 0.95, edge + 0.9 * (fine - 0.5) * (1.0 - edge));
+    float dense = sqrt(max(edge, 0.0)), dots = dense * smoothstep(0.86 - 1.3 * dense, 1.24 - 1.3 * dense, abs(2.0 * fract(3.0 * fine + 2.0 * coil) - 1.0));   // stubble, denser and denser
+    float alpha = mix(soft, dots, coils);
+    vec3 hair = 0.70 * lit * mix(0.75 + 1.1 * fine, (0.10 + 3.2 * coil * coil * (0.3 + fine)) * (0.5 + grain.r), coils);
     float way = clamp((parting.y - rest_position.z) / max(parting.y - parting.w, 1e-4), 0.0, 1.0);
     float off = abs(rest_position.x - mix(parting.x, parting.z, way));
     float bare = smoothstep(BARE, 0.2 * BARE, off) * step(parting.w, rest_position.z) * (0.35 + 0.4 * fine);

@@ -31,10 +31,10 @@ void main() {
     vec3 towards = eye_point.xyz - placed;
     float pixels = stroke.z * eye_point.w / length(towards);
     float widened = max(1.0, NARROWEST / pixels);
-    float taper = (1.0 - 0.85 * pow(t, 1.6)) * min(1.0, 0.5 + 2.0 * t);
+    float taper = (1.0 - 0.85 * pow(t, 1.6)) * min(1.0, 0.8 + 1.5 * t);
     vec3 sideways = cross(along, towards);
     placed += normalize(sideways) * stroke.y * stroke.z * widened * taper;
     vec3 light = hair_light(paint.rgb, along, axes[2], normalize(towards), gloss, 0.0, 1.0);
-    tone = vec4(finish(light), blended(paint.a / widened * (1.0 - 0.75 * t * t) * min(1.0, 0.55 + 1.6 * t)));
+    tone = vec4(finish(light), blended(paint.a / widened * (1.0 - 0.75 * t * t) * min(1.0, 0.8 + 1.2 * t)));
     gl_Position = view_projection * vec4(placed, 1.0);
 }

@@ -7,27 +7,36 @@ out vec4 colour;           // its opacity becomes coverage of the samples
 uniform float least_cover; // of a pixel, that is drawn
 
 const float HAIRS = 26.0;      // that are seen in a lock
-const float WISP = 5.0;        // hairs that end together in a point
-const float TIP = 0.09;        // of the length, over which hairs end
-const float EDGE = 6.0;        // hairs a lock's width, over which the sheet's front edge grows dense
-const float APART = 0.70;      // from here on locks narrow towards their tips
+const float CARDS = 14.0;      // the first number of a lock that is a card
+const float CARD_HAIRS = 15.0; // that are seen in a card
+const float WISP = 3.5;        // hairs that end together in a point
+const float TIP = 0.11;        // of the length, over which hairs end
+const float EDGE = 3.0;        // hairs a lock's width, over which the sheet's front edge grows dense
+const float APART = 0.55;      // from here on locks narrow towards their tips
 
 float scattered(float number) {
     return fract(0.618034 * number + 0.37 * floor(strand.w) + 0.11 * fract(0.1415 * number * number));
 }
 
+// From one strand of hairs to the next, 0..1.
+float varied(float hairs) {
+    float low = floor(hairs);
+    return mix(scattered(low), scattered(low + 1.0), smoothstep(0.0, 1.0, hairs - low));
+}
+
 void main() {
     float along = strand.y, number = floor(strand.x), lock = 2.0 * (strand.x - number) - 1.0, own = scattered(3.0 * number + 1.0);
-    float hairs = HAIRS * strand.x + 1.5 * drift.r, low = floor(hairs);
-    float here = scattered(low), between = mix(here, scattered(low + 1.0), smoothstep(0.0, 1.0, hairs - low));
-    float narrow = 1.05 - (0.15 + 0.45 * own) * smoothstep(APART, 1.0, along);
-    float edge = EDGE * strand.x * (1.2 - along) + 0.8 * along;   // fewer hairs frame the face
-    float wisp = hairs / WISP, ends = scattered(floor(wisp) + 7.0), last = 1.0 - TIP * ((0.3 + own) * ends * ends + 0.3 * own);
-    vec3 within = vec3(edge + 0.25 - here, (last - along) / (0.6 * TIP) - abs(2.0 * fract(wisp) - 1.0), narrow + 0.35 * here - abs(lock));
+    float card = step(CARDS, strand.x);
+    float hairs = mix(HAIRS, CARD_HAIRS, card) * strand.x + 1.5 * drift.r, here = scattered(floor(hairs));
+    float narrow = mix(1.4, 0.82, card * smoothstep(0.0, 0.2, along)) - (0.10 + 0.35 * own) * smoothstep(APART, 1.0, along);
+    float edge = EDGE * (strand.x - CARDS * card) * (1.2 - along) + 0.8 * along;   // fewer hairs frame the face
+    float wisp = hairs / WISP, ends = scattered(floor(wisp) + 7.0), last = 1.0 - TIP * ((0.3 + own) * ends * ends + 0.3 * own + 0.2 * here);
+    vec3 within = vec3(edge + 0.25 - here, (last - along) / (0.6 * TIP) - abs(2.0 * fract(wisp) - 1.0), narrow + 0.32 * here - abs(lock));
     vec3 covered = clamp(0.5 + within / max(fwidth(within), 1e-4), 0.0, 1.0);
     float cover = min(covered.x, min(covered.y, covered.z));
     if (cover < least_cover) discard;
-    float fine = abs(2.0 * fract(2.7 * hairs) - 1.0), gap = 1.0 - (0.06 + 0.16 * own) * smoothstep(0.5, 1.0, abs(lock)) * (0.9 + drift.g);
-    float light = (1.0 + 0.16 * (between - 0.5) + 0.10 * (fine - 0.5) + 0.22 * drift.b) * gap;
-    colour = vec4(mix(dull, bright, (0.25 + 0.5 * between) * gap) * light, least_cover < 0.5 ? cover : 1.0);   // with one sample a pixel there is hair or none
+    float strands = 0.6 * varied(0.43 * hairs) + 0.4 * here;
+    float gap = 1.0 - (0.10 + 0.30 * own) * smoothstep(0.2, 1.0, abs(lock)) * (0.9 + drift.g);
+    float light = (0.78 + 0.44 * strands + 0.22 * drift.b) * gap;
+    colour = vec4(mix(dull, bright, strands * strands * gap) * light, least_cover < 0.5 ? cover : 1.0);   // with one sample a pixel there is hair or none
 }

@@ -17,14 +17,17 @@ centroid out vec3 drift;         // how hairs wander, gaps deepen and light chan
 uniform vec3 hair_colour;
 uniform float gloss;
 
+const float TURNED = -0.35;   // cosine; at its outline hair is still seen from outside
+
 void main() {
     vec3 placed = (head * vec4(place, 1.0)).xyz, along = mat3(head) * along_rest, n = mat3(head) * facing;
     vec3 view = normalize(eye_point.xyz - placed);
-    n = dot(n, view) < 0.0 ? -n : n;
-    vec3 base = hair_colour * mix(1.0, 1.25, smoothstep(0.3, 1.0, sheet.y));
-    HairLight light = hair_lights(base, along, n, view, gloss, 0.10 * (fract(sheet.w * 3.7) - 0.5), sheet.z);
-    dull = finish(light.body + 0.30 * light.shine);
-    bright = finish(light.body + 1.5 * light.shine);
+    n = dot(n, view) < TURNED ? -n : n;
+    float own = fract(sheet.w * 3.7);
+    vec3 base = hair_colour * mix(0.9, 1.8, smoothstep(0.15, 1.0, sheet.y)) * (0.85 + 0.3 * fract(sheet.w * 5.3));
+    HairLight light = hair_lights(base, along, n, view, gloss, 0.30 * (own - 0.5), sheet.z);
+    dull = finish(light.body + 0.45 * light.shine);
+    bright = finish(light.body + 2.6 * light.shine);
     strand = sheet;
     drift = noise(vec3(0.23 * sheet.x, 0.9 * sheet.y, 0.31 * sheet.w)).rgb - 0.5;
     gl_Position = view_projection * vec4(placed, 1.0);

@@ -1,5 +1,5 @@
 #version 330 core
-// A sheet of hair spread out flat, without light: across the picture its locks, from the bottom up its length.
+// Hair spread out flat, without light: across the picture a sheet's locks, then cards, from the bottom up their length.
 #include "noise.glsl"
 centroid out vec3 dull, bright;
 centroid out vec4 strand;

@@ -28,7 +28,8 @@ from agentface.view.gl.uniforms import light_rows, shadow_projection, unit
 from agentface.view.hair.cap import solid_first
 from agentface.view.hair.grown import GrownHair
 from agentface.view.hair.head_hair import NARROWEST, STREAKS
-from agentface.view.hair.sheets import hanging_first, sheets_mesh
+from agentface.view.hair.sheet_array import hanging_first
+from agentface.view.hair.sheets import sheets_mesh
 from agentface.view.hair.strands import LIFT
 from agentface.view.parts.anchored import eye_linings
 from agentface.view.parts.mouth import PARTS, SHADED, MouthOpening, mouth_mesh
@@ -157,6 +158,6 @@ def _hair(model: HeadModel, grown: GrownHair) -> dict[str, Any]:
     }
     if grown.sheets:
         mesh = sheets_mesh(grown.sheets)
-        ordered, hanging = hanging_first(mesh.triangles, mesh.fields["place"] - grown.centre.astype(np.float32))
+        ordered, hanging = hanging_first(mesh, mesh.triangles, grown.centre)
         made["sheets"] = {"fields": mesh.fields, "triangles": ordered, "hanging": hanging, "least_cover": 0.02}
     return made

@@ -33,9 +33,10 @@ def renderer(request):
 
 @pytest.fixture(scope="module")
 def green(renderer):
-    """The same face before green."""
+    """The same face before green, without hair: that hides holes, and one sees past it beside the face."""
     bright = {"background_inner": [0.0, 1.0, 0.0], "background_outer": [0.0, 1.0, 0.0]}
-    return Renderer(renderer.model, renderer.look.model_copy(update=bright), renderer.context)
+    bald = renderer.look.hair.model_copy(update={"style": "none"})
+    return Renderer(renderer.model, renderer.look.model_copy(update=bright | {"hair": bald}), renderer.context)
 
 
 @pytest.mark.parametrize("view", ["front", "three-quarter", "profile"])

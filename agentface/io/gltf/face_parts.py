@@ -20,7 +20,7 @@ from agentface.view.dressing import dressed_skin, grown_hair, irregularities
 from agentface.view.hair.grown import GrownHair
 from agentface.view.hair.hair_mesh import hair_colours, hair_strips, hair_triangles, strand_mesh
 from agentface.view.hair.ribbons import Hairs
-from agentface.view.hair.sheets import LOCKS
+from agentface.view.hair.sheets import sheet_places, sheets_mesh
 from agentface.view.parts.anchored import Anchored, eye_linings
 from agentface.view.parts.shirt import shirt
 from agentface.view.parts.teeth import crown_places
@@ -217,12 +217,16 @@ def _head_hair(model: HeadModel, grown: GrownHair) -> list[FacePart]:
             colours=strands.colours, stays=np.asarray(stays[hold], np.float32),
         )
     )  # fmt: skip
-    for number, sheet in enumerate(grown.sheets):
-        rows, triangles = sheet.mesh()
-        still = rows[:, :3].copy(), rows[:, 6:9].copy()
-        uv = np.asarray(rows[:, 9:11] / np.array([LOCKS, 1.0]), np.float32)
-        light = np.repeat(np.clip(rows[:, 11:12], 0.0, 1.0), 3, axis=1)
-        parts.append(FacePart(f"hair_sheet_{number}", "hair_sheet", "head", triangles, _still(still), uv, light))
+    for number, layer in enumerate(grown.layers):
+        mesh = sheets_mesh(layer)
+        place, outward, sheet = (mesh.fields[name] for name in ("place", "facing", "sheet"))
+        light = np.repeat(np.clip(sheet[:, 2:3], 0.0, 1.0), 3, axis=1)
+        parts.append(
+            FacePart(
+                f"hair_sheet_{number}", "hair_sheet", "head", mesh.triangles, _still((place, outward)),
+                sheet_places(sheet), light,
+            )
+        )  # fmt: skip
     return parts
 
 

@@ -12,7 +12,7 @@ from agentface.head.skin_image import bled
 from agentface.view.gl.context import compile_program
 from agentface.view.gl.noise import SIDE, noise_volume
 from agentface.view.hair.grown import GrownHair
-from agentface.view.hair.sheets import LOCKS
+from agentface.view.hair.sheets import PAINTED
 from agentface.view.parts.rigid import IRIS_RADIUS
 
 EYE_INSET = 0.96
@@ -50,9 +50,9 @@ class FlatPainter:
         return self._drawn(self._program("screen", "eye_flat", values), size)
 
     def sheet(self, look: HairLook, size: int) -> Bytes:
-        """Long hair, spread out flat: across its locks from u 0 to 1, along it from v 0 to 1."""
+        """Long hair, spread out flat: across a sheet's locks, then cards, from u 0 to 1, along it from v 0 to 1."""
         values = {
-            "locks": float(LOCKS),
+            "locks": float(PAINTED),
             "dull_colour": srgb(_DULL * np.array(look.colour)),
             "bright_colour": srgb(_BRIGHT * np.array(look.colour)),
             "least_cover": _COVER,

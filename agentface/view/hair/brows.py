@@ -12,6 +12,8 @@ from agentface.view.hair.ribbons import Hairs, Roots, roots_along, roots_in_fron
 
 _BROW_HAIRS = 520
 _UPPER_LASHES, _LOWER_LASHES = 90, 42
+_LASH_LINE, _GATHERED = 0.030, 0.8
+"""Metres of lid that lashes stand on; how far the tips of a bundle come together."""
 _REFERENCE_EYES = 0.0525
 """The distance between the pupils, metres, that the sizes below are meant for."""
 
@@ -108,13 +110,17 @@ def _lash_row(
     roots = roots_along(half, model.vertices, np.clip(1 - outward, 0.0, 1.0))
     lengths = (length * (0.45 + 0.65 * outward) * (0.7 + 0.5 * rng.random(count)))[:, None]
     # lashes stick together by threes and fours, and are unequal
-    bundles = np.repeat(rng.normal(0, 0.16, count), rng.integers(2, 5, count))[:count]
-    fan = ((outward - 0.45) * 1.1 + bundles + rng.normal(0, 0.06, count))[:, None] * (1.0 if side == "l" else -1.0)
-    rise = (-0.10, 0.50) if upper else (-0.10, -0.35)
+    bundle = np.repeat(np.arange(count), rng.integers(2, 5, count))[:count]
+    middle = (np.bincount(bundle, outward) / np.maximum(np.bincount(bundle), 1))[bundle]
+    lengths = lengths * rng.uniform(0.8, 1.15, count)[bundle][:, None]
+    together = _GATHERED * _LASH_LINE * (middle - outward)[:, None] / lengths
+    fan = (outward - 0.45) * 1.1 + rng.normal(0, 0.12, count)[bundle] + rng.normal(0, 0.05, count)
+    fan = (fan[:, None] + together) * (1.0 if side == "l" else -1.0)
+    rise = (-0.14, 0.60) if upper else (-0.10, -0.35)
     reach = (0.50, 0.68) if upper else (0.60, 0.90)
     bends = lengths * np.concatenate([0.35 * fan, np.full_like(fan, rise[0]), np.full_like(fan, reach[0])], axis=1)
     tips = lengths * np.concatenate([0.75 * fan, np.full_like(fan, rise[1]), np.full_like(fan, reach[1])], axis=1)
-    radii = (0.00017 if upper else 0.00010) * (0.8 + 0.4 * rng.random(count))
+    radii = (0.00022 if upper else 0.00010) * (0.8 + 0.4 * rng.random(count))
     paint = np.tile([0.008, 0.006, 0.005, 0.9 if upper else 0.65], (count, 1))
     return Hairs.grown(roots, (model.vertices, normals), bends, tips, radii, paint)
 

@@ -18,7 +18,7 @@ from agentface.view.parts.anchored import Anchored, AnchoredArray
 
 _THICKNESS = {"cropped": 0.0028, "swept": 0.0010, "bob": 0.0010, "bun": 0.0010}
 _OPAQUE = 0.97
-_STRIP = {"cropped": 0.013, "swept": 0.013, "bob": 0.008, "bun": 0.013}
+_STRIP = {"cropped": 0.017, "swept": 0.013, "bob": 0.008, "bun": 0.013}
 """Metres in which it fades in behind the hairline."""
 
 
@@ -62,11 +62,12 @@ def scalp_cap(model: HeadModel, line: Hairline, look: HairLook) -> Anchored:
     light, triangles = mesh.mean(light), mesh.triangles
     anchors = np.repeat(used[mesh.ends].astype(np.int32), 2, axis=1)
     depth = line.behind(places)
+    strip = line.taper(places, _STRIP[look.style]) if look.style == "cropped" else _STRIP[look.style]
     # what is nearly clear lies on the skin: beyond its outline one would see through
-    rise = 0.0003 + _THICKNESS[look.style] * np.clip((depth - 0.6 * _STRIP[look.style]) / 0.020, 0, 1)
+    rise = 0.0003 + _THICKNESS[look.style] * np.clip((depth - 0.6 * strip) / 0.020, 0, 1)
     lifted = places + normals * rise[:, None].astype(np.float32)
     ones = np.ones(len(places))
-    edge = np.clip((depth + 0.001) / _STRIP[look.style], 0, 1)
+    edge = np.clip((depth + 0.001) / strip, 0, 1)
     triangles = triangles[edge[triangles].max(1) > 0]
     material = np.column_stack([edge, np.clip(1.3 * light[:, 0], 0, 1), ones, ones])
     normals = vertex_normals(lifted, triangles).astype(np.float32)

@@ -4,36 +4,55 @@ from __future__ import annotations
 
 import numpy as np
 
+from agentface.conventions import Indices
 from agentface.head.look import HairLook
 from agentface.head.model import HeadModel
-from agentface.view.hair.hairline import HairRoots
+from agentface.view.hair.hairline import Hairline, HairRoots
 from agentface.view.hair.ribbons import unit_rows
 from agentface.view.hair.strand_set import StrandSet, paints
+from agentface.view.hair.strands import nearest_vertices
 from agentface.view.hair.styles import REFERENCE_EYES, Amount, Style, knot_of
 
+_WHOLE = 0.016
+"""Metres behind the hairline of the forehead where a crop has its whole length."""
+_COIL = 0.0013
+"""Metres from a coil's axis to its hair where hair is as curly as it gets."""
+_IN_A_CLUMP, _CLUMPED, _CLUMP_TINT = 9, 0.65, (0.9, 3.0)
+"""Coils that gather, by how much of the way, and how dark or light clumps are."""
 _BUN_SHARE = 0.35
 
 
-def crop(roots: HairRoots, style: Style, amount: Amount, look: HairLook, rng: np.random.Generator) -> StrandSet:
+def crop(
+    roots: HairRoots, line: Hairline, style: Style, amount: Amount, look: HairLook, rng: np.random.Generator
+) -> StrandSet:
     """Small coils that stand up from the scalp, wider with ``look.curl``."""
     count, t = len(roots), np.linspace(0.0, 1.0, amount.points)
     layer = rng.random(count)
     n = roots.normals
     x = unit_rows(np.cross(n, rng.normal(size=(count, 3))))
     y = np.cross(n, x)
-    short = np.clip(roots.depth / 0.018, 0.16, 1.0)
+    short = np.clip(roots.depth / line.taper(roots.places, _WHOLE), 0.10, 1.0)
     height = look.volume * look.length * style.thickness * short * (0.45 + 0.55 * layer)
-    radius = 0.0011 * look.curl * (0.6 + 0.8 * rng.random(count)) * (0.4 + 0.6 * short)
+    radius = _COIL * look.curl * (0.6 + 0.8 * rng.random(count)) * (0.4 + 0.6 * short)
     turn = 2 * np.pi * (rng.random(count)[:, None] + (0.8 + 0.5 * rng.random(count)[:, None]) * t)
     lean = rng.normal(0, 0.0012, (count, 2)) * short[:, None]
     side = radius[:, None] * np.clip(3 * t, 0, 1)
     points = roots.places[:, None] + n[:, None] * (height[:, None] * t)[..., None]
     points = points + x[:, None] * (side * np.cos(turn) + lean[:, :1] * t)[..., None]
     points = points + y[:, None] * (side * np.sin(turn) + lean[:, 1:] * t)[..., None]
-    paint = paints(look, np.full(count, 1.7), 1.0 * np.clip(roots.depth / 0.012, 0.25, 1.0), rng, 0.6)
+    clump = _clumps(roots, rng)
+    points = points + _CLUMPED * (roots.places[clump] - roots.places)[:, None] * t[:, None] * short[:, None, None]
+    tint = rng.uniform(*_CLUMP_TINT, count)[clump]
+    paint = paints(look, tint, 1.0 * np.clip(1.3 * short, 0.25, 1.0), rng, 0.6)
     cover = (0.25 + 0.75 * layer[:, None]) * (0.4 + 0.6 * t)
     radii = amount.radius * (0.7 + 0.6 * rng.random(count)) * np.clip(short + 0.2, 0, 1)
     return StrandSet(points, radii, paint, cover, layer, np.ones(count))
+
+
+def _clumps(roots: HairRoots, rng: np.random.Generator) -> Indices:
+    """``(N,)``: the root that each curl's clump gathers about."""
+    middle = rng.choice(len(roots), max(len(roots) // _IN_A_CLUMP, 1), replace=False)
+    return np.asarray(middle[nearest_vertices(roots.places, roots.places[middle].astype(np.float32))], np.int32)
 
 
 def bun(model: HeadModel, amount: Amount, pieces: int, look: HairLook, rng: np.random.Generator) -> StrandSet:

@@ -29,7 +29,7 @@ _GUIDES, _GUIDE_POINTS = 420, 60
 _GUIDE_SEED = 7
 _WAVE = 0.090
 """Metres from wave to wave of wavy hair."""
-_LOCKS_BEHIND = 0.004
+_LOCKS_BEHIND = 0.001
 """Metres behind the hairline where locks begin; single hairs stand before them."""
 _HAIRS_ELSEWHERE = 0.05
 _STRAY = 0.16
@@ -47,7 +47,7 @@ def groom(model: HeadModel, normals: Floats, look: HairLook, quality: str, rng: 
     line = Hairline(model, look.hairline)
     if look.style == "cropped":
         roots = HairRoots.drawn(model, normals, line, amount.hairs, rng)
-        return crop(roots, style, amount, look, rng).in_order(model)
+        return crop(roots, line, style, amount, look, rng).in_order(model)
     hull = Hull(model, ears=style.over_ears)
     # the guides are the same for every quality, so that they show the same hair
     starts = HairRoots.drawn(model, normals, line, _GUIDES, np.random.default_rng(_GUIDE_SEED))

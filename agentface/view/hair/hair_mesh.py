@@ -68,7 +68,7 @@ def hair_strips(hairs: Hairs, vertices: Floats, normals: Floats) -> tuple[Floats
     """
     lines = np.stack([hairs.curve(vertices, normals, float(t)) for t in _STEPS], axis=1)
     sideways = unit_rows(np.cross(np.gradient(lines, axis=1), _FORWARD))
-    taper = (1.0 - 0.85 * _STEPS**1.6) * np.minimum(1.0, 0.5 + 2.0 * _STEPS)
+    taper = (1.0 - 0.85 * _STEPS**1.6) * np.minimum(1.0, 0.8 + 1.5 * _STEPS)
     reach = sideways * (hairs.radii[:, None] * taper)[..., None]
     facing = hairs.roots.frames(vertices, normals)[1][:, :, 2]
     return (

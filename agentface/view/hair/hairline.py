@@ -15,15 +15,23 @@ from agentface.view.hair.ribbons import unit_rows
 
 # The hairline over the azimuth about the head's vertical axis: 0 the forehead, 180 the nape; heights over the eyes
 # in distances between the pupils.
-_AZIMUTH_DEG = (0, 12, 24, 32, 38, 43, 47, 51, 55, 59, 63, 67, 72, 84, 90, 97, 105, 118, 150, 180)
+_AZIMUTH_DEG = (0, 12, 20, 26, 32, 38, 43, 47, 51, 55, 59, 63, 67, 72, 84, 90, 97, 105, 118, 150, 180)
 _HEIGHT = (
-    1.0, 0.992, 0.955, 0.885, 0.79, 0.65, 0.48, 0.24, -0.12, -0.4,
-    -0.45, -0.36, -0.36, -0.36, -0.40, -0.56, -0.85, -1.05, -1.18, -1.22,
+    1.0, 0.988, 0.955, 0.905, 0.835, 0.73, 0.60, 0.42, 0.16, -0.18, -0.42,
+    -0.47, -0.44, -0.38, -0.36, -0.40, -0.56, -0.85, -1.05, -1.18, -1.22,
 )  # fmt: skip
+_METRES_A_DEGREE = 0.0016
+"""Round the head, on the skin."""
+_ALL_ROUND = 0.04
+"""Metres above the hairline from where on it no longer matters how steep it is."""
+_TAPER, _TAPER_FROM_DEG, _TAPER_TO_DEG = 0.028, 25.0, 66.0
+"""Metres over which a crop grows from nothing at the sides and the nape; from which turn on, and where wholly."""
 _AXIS_Z = -0.69
-_SOFT = 0.006
+_SOFT = 0.003
 """Metres over which hair grows denser behind the hairline."""
-_SHADE = {"cropped": 0.30, "swept": 0.45, "bob": 0.60, "bun": 0.35}
+_SHADE = {"cropped": 0.15, "swept": 0.45, "bob": 0.60, "bun": 0.35}
+_SCALP_TINT, _SOFT_FRONT = 0.9, 0.016
+"""How much a crop tints the scalp below it, and the metres at the forehead over which it does so."""
 _SHADE_REACH = 0.007
 """Metres in which the shade of hair falls to a third."""
 _STRIP = 0.012
@@ -50,17 +58,29 @@ class Hairline:
         table = np.interp(turns, _AZIMUTH_DEG, _HEIGHT)
         padded = np.concatenate([table[4:0:-1], table, table[-2:-6:-1]])
         self._turns, self._heights = turns, np.convolve(padded, np.hanning(11)[1:-1] / np.hanning(11).sum(), "valid")
+        self._slant = 1.0 / np.hypot(1.0, np.gradient(self._heights) * self.unit / _METRES_A_DEGREE)
 
     def behind(self, points: Floats | Doubles) -> Doubles:
         """``(N,)`` metres behind the hairline at each point ``(N, 3)`` of the head; negative on face and ears."""
-        turn = np.degrees(np.arctan2(np.abs(points[:, 0]), points[:, 2] - _AXIS_Z * self.unit))
+        turn = self._turn(points)
         height = np.interp(turn, self._turns, self._heights)
         # the forehead's part is fixed by the landmark, the rest by the size of the face
         above = points[:, 1] - np.where(height > 0, height * self.top, height * self.unit)
         y, z = points[:, 1] / self.unit + 0.40, points[:, 2] / self.unit + 0.24
         ahead = z + 0.25 * y
         off_ear = (np.hypot(y / 0.54, ahead / np.where(ahead > 0.0, *_EAR)) - 1) * 0.42 * self.unit
-        return np.asarray(np.minimum(above + _uneven(points), off_ear))
+        above = above + _uneven(points)
+        slant = np.interp(turn, self._turns, self._slant)
+        away = above * (slant + (1.0 - slant) * np.clip(above / _ALL_ROUND, 0.0, 1.0))
+        return np.asarray(np.minimum(away, off_ear))
+
+    def taper(self, points: Floats | Doubles, front: float) -> Doubles:
+        """``(N,)`` metres behind the hairline where a crop has its whole length: ``front`` at the forehead."""
+        side = smoothstep(_TAPER_FROM_DEG, _TAPER_TO_DEG, self._turn(points))
+        return np.asarray(front + (_TAPER - front) * side)
+
+    def _turn(self, points: Floats | Doubles) -> Doubles:
+        return np.asarray(np.degrees(np.arctan2(np.abs(points[:, 0]), points[:, 2] - _AXIS_Z * self.unit)))
 
     def over(self, model: HeadModel) -> Doubles:
         """``(V,)`` metres behind the hairline for the vertices of the skin."""
@@ -110,13 +130,17 @@ class HairRoots:
 
 def hidden(model: HeadModel, line: Hairline, look: HairLook) -> Doubles:
     """``(V,)`` 0..1: how much hair hides each vertex of the skin, on the scalp and behind hair that falls over it."""
-    scalp = np.clip((line.over(model) + 0.003) / 0.014, 0, 1)
+    over = line.over(model)
+    if look.style == "cropped":
+        return np.asarray(_SCALP_TINT * np.clip(over / line.taper(model.vertices, _SOFT_FRONT), 0, 1))
+    scalp = np.clip((over + 0.003) / 0.014, 0, 1)
     if look.style != "bob":
         return np.asarray(scalp)
     y, z = model.vertices[:, 1], model.vertices[:, 2]
     bottom = look.length * float(model.landmarks["menton"][1])
     behind = np.clip((0.05 * line.unit - z) / (0.35 * line.unit), 0, 1) * np.clip((y - bottom) / 0.03, 0, 1)
-    return np.maximum(scalp, 0.9 * behind * (y < 0.6 * line.unit))
+    ears = smoothstep(0.5, 0.95, model.material[:, 3])
+    return np.maximum(np.maximum(scalp, ears), 0.9 * behind * (y < 0.6 * line.unit))
 
 
 def hair_shade(model: HeadModel, look: HairLook) -> Doubles:

@@ -14,7 +14,7 @@ from agentface.view.gl.programs import Programs
 from agentface.view.gl.quality import quality_named
 from agentface.view.hair.cap import Cap
 from agentface.view.hair.grown import GrownHair
-from agentface.view.hair.sheets import SheetArray
+from agentface.view.hair.sheet_array import SheetArray
 from agentface.view.hair.strands import StrandArray
 
 STREAKS = {"fast": 6.0, "portrait": 7.0}

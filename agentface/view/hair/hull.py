@@ -22,9 +22,7 @@ class Hull:
     """
 
     def __init__(self, model: HeadModel, *, ears: bool) -> None:
-        unit = model.landmarks.eye_separation
-        back = float(model.vertices[:, 2].min())
-        self.centre = np.array([0.0, 0.36 * unit, back + 1.72 * unit])
+        self.centre = self.centre_of(model)
         chosen = model.triangles
         if not ears:
             chosen = chosen[model.material[chosen, 3].max(1) < 0.3]
@@ -35,6 +33,12 @@ class Hull:
         rows = np.clip((level / 2.6 * _LEVELS).astype(int), 0, _LEVELS - 1)
         np.maximum.at(table, (rows, ((turn / (2 * np.pi)) % 1 * _TURNS).astype(int) % _TURNS), reach)
         self._table = _smooth(_filled(table))
+
+    @staticmethod
+    def centre_of(model: HeadModel) -> Doubles:
+        """``(3,)`` m: what radii are measured from."""
+        unit, back = model.landmarks.eye_separation, float(model.vertices[:, 2].min())
+        return np.array([0.0, 0.36 * unit, back + 1.72 * unit])
 
     def push_out(self, points: Doubles, height: Doubles | float) -> Doubles:
         """``points (..., 3)`` moved outward to at least ``height`` metres above the hull."""

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
@@ -12,46 +11,34 @@ from agentface.head.look import HairLook
 from agentface.head.model import HeadModel
 from agentface.mesh.smoothstep import smoothstep
 from agentface.view.gl.drawn_mesh import DrawnMesh
-from agentface.view.hair.groom import smoothed, waves
-from agentface.view.hair.hairline import Hairline
+from agentface.view.hair.drape import draped
+from agentface.view.hair.groom import waves
 from agentface.view.hair.hull import Hull
 from agentface.view.hair.ribbons import unit_rows
-from agentface.view.hair.strand_set import StrandSet, paints
-from agentface.view.hair.strands import middle_of, sector_of, skin_round
-from agentface.view.hair.styles import REFERENCE_EYES, STYLES, Amount, parting_of, whorl_of
-from agentface.view.hair.visible import before_skin
+from agentface.view.hair.styles import REFERENCE_EYES, STYLES
 
-_COLUMNS, _ROWS = 48, 20
-_INNER_FROM, _INNER_ROWS, _INNER_BEHIND = 0.5, 8, 4
-"""The inner sheet is seen between tips only: where along the hair it starts, its rows, its first column."""
-_LAYERS = (1.0, 0.6)
-"""Where between the skin and the outside of the hair the sheets lie."""
-_ON_PARTING = 0.45
-"""The part of the columns that start along the parting; the others fan out round the whorl."""
-_TURNS_DEG = (46.0, 186.0)
-"""Round the head from the front, where it is widest: where the first and the last column lie."""
-_ARC, _FALL, _SMOOTHINGS = 24, 12, 60
-_BESIDE = 0.0008
-"""Metres from the parting where hair starts."""
-_AT_PARTING, _RISE = 0.25, 0.045
+_EVERY, _ROWS = 3, 18
+"""Which of the columns they have; points along each."""
+_LAYER_AT_ROOT, _LAYER, _SHARE = 0.66, 0.42, 0.97
+"""Where between the skin and the outside of the hair the sheets lie, and how long they are beside the cards."""
+_LIGHT_AT_ROOT, _LIGHT = 0.68, 0.42
+"""How much light the cards let through to them."""
+_AT_PARTING, _RISE = 0.22, 0.050
 """How high hair lies where it starts, as a part of its thickness, and the metres over which it rises from there."""
-_EDGE_SHADE, _EDGE_REACH = 0.6, 0.011
+_EDGE_SHADE, _EDGE_REACH = 0.7, 0.013
 """How much light the front edge keeps off the skin below it, and within how many metres."""
-LOCKS = 13
+ROOTWARD = 1.25
+"""The exponent with which the points along hair gather at its root."""
+LOCKS, FIRST_CARD, PAINTED = 13, 14, 26
+"""Of a sheet; the number of the first card; up to which number ``shaders/sheet_flat.vert.glsl`` paints."""
 _WIDTHS = 0.3, 1.7
 """Of the spaces between columns, in locks, as parts of their mean."""
-_RIDGE, _UNEVEN = 0.0016, 0.05
-"""Metres that a lock rises over the gaps beside it; the part by which the lengths of locks differ."""
-_LOWEST = 0.0035
+_UNEVEN = 0.05
+"""The part by which the lengths of locks differ."""
+_LOWEST = 0.0045
 """Metres over the hull, which is smoother than the head."""
-_AWAY, _TO_THE_FRONT = 0.004, 2.0
-"""Metres that single hairs leave a sheet; the exponent with which their columns gather at the face."""
-_INSIDE_BELOW = 0.045
-"""Metres over the centre: below it hair stands off forehead, face and neck, and is seen from inside too."""
 _TUCKED = 0.2
 """How high the front edge lies, as a part of the hair's thickness."""
-_COVERAGE = 0x809E, 0x809F
-"""GL_SAMPLE_ALPHA_TO_COVERAGE, GL_SAMPLE_ALPHA_TO_ONE."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -85,120 +72,51 @@ class Sheet:
 
 
 def sheets(model: HeadModel, look: HairLook, hull: Hull, rng: np.random.Generator) -> list[Sheet]:
-    """The sheets of hair that falls from a parting over the ``hull`` with its ears, the outer ones first."""
+    """The sheets of hair that falls from a parting over the ``hull`` with its ears: what is seen between cards."""
     style = STYLES[look.style]
     thickness = style.thickness * look.volume * model.landmarks.eye_separation / REFERENCE_EYES
-    grown = []
-    for side in SIDES:
-        paths = _paths(model, look, hull, 1.0 if side == SIDES[0] else -1.0)
-        grown += [
-            _sheet(hull, look, paths[0 if layer == 1.0 else _INNER_BEHIND :], thickness, layer, rng)
-            for layer in _LAYERS
-        ]
-    return [*grown[:: len(_LAYERS)], *grown[1 :: len(_LAYERS)]]
-
-
-def _paths(model: HeadModel, look: HairLook, hull: Hull, sign: float) -> Doubles:
-    """``(C, K, 3)`` m on the hull: from the parting over the head, by the shortest way, to its widest, then down."""
-    roots = _roots(model, look, hull, sign) - hull.centre
-    first = unit_rows(roots)
-    turn = np.radians(np.linspace(*_TURNS_DEG, _COLUMNS))
-    last = np.stack([sign * np.sin(turn), 0.0 * turn, np.cos(turn)], axis=1)
-    angle = np.arccos(np.clip((first * last).sum(1), -1.0, 1.0))[:, None, None]
-    part = np.linspace(0.0, 1.0, _ARC)[None, :, None]
-    arc = (np.sin((1.0 - part) * angle) * first[:, None] + np.sin(part * angle) * last[:, None]) / np.sin(angle)
-    arc = hull.hold(hull.centre + 0.1 * arc, 0.0, 0.0)
-    lowest = look.length * float(model.landmarks["menton"][1])
-    drop = np.linspace(0.0, 1.0, _FALL + 1)[None, 1:, None] * (lowest - arc[:, -1:, 1:2])
-    fall = arc[:, -1:] + drop * [0.0, 1.0, 0.0]
-    path = np.concatenate([arc, hull.hold(fall, 0.0, 0.0)], axis=1)
-    return hull.push_out(smoothed(path, _SMOOTHINGS), 0.0)
+    return [
+        _sheet(hull, look, draped(model, look, hull, 1.0 if side == SIDES[0] else -1.0)[::_EVERY], thickness, rng)
+        for side in SIDES
+    ]
 
 
 def edge_shade(grown: list[Sheet], skin: Floats) -> Doubles:
     """``(V,)`` 0..1: how much of the surroundings' light hair at the face keeps off the ``skin (V, 3)`` beside it."""
     away = np.full(len(skin), np.inf, np.float32)
-    for sheet in _outer(grown):
+    for sheet in grown:
         away = np.minimum(away, np.linalg.norm(skin[:, None] - sheet.points[0], axis=2).min(axis=1))
     return np.asarray(_EDGE_SHADE * np.exp(-((away / _EDGE_REACH) ** 2)), np.float64)
 
 
-def _outer(grown: list[Sheet]) -> list[Sheet]:
-    return grown[: len(SIDES)]
-
-
-def parting_line(model: HeadModel, look: HairLook, hull: Hull) -> Doubles:
-    """``(N, 3)`` m on the hull: the parting from the hairline back to the whorl."""
-    line, whorl = Hairline(model, look.hairline), whorl_of(model, look)
-    pitch = np.radians(np.linspace(85.0, -30.0, 400))
-    top = hull.hold(hull.centre + 0.1 * np.stack([0 * pitch, np.cos(pitch), np.sin(pitch)], axis=1), 0.0, 0.0)
-    part = np.clip((top[:, 2] - whorl[2]) / (top[0, 2] - whorl[2]), 0.0, 1.0)
-    top[:, 0] = whorl[0] + (parting_of(model, look) - whorl[0]) * part
-    top = hull.hold(top, 0.0, 0.0)
-    first, last = int(np.argmax(line.behind(top) > 0.001)), int(np.argmax(top[:, 2] < whorl[2]))
-    return top[first:last]
-
-
-def _roots(model: HeadModel, look: HairLook, hull: Hull, sign: float) -> Doubles:
-    """``(C, 3)`` m along the parting from the hairline back, then round the whorl to the middle of the back."""
-    line, count = parting_line(model, look, hull), round(_ON_PARTING * _COLUMNS)
-    chosen = line[np.linspace(0, len(line) - 1, count).astype(int)]
-    fan = np.radians(np.linspace(90.0, 190.0, _COLUMNS - count))
-    round_whorl = chosen[-1] + 0.004 * np.stack([sign * np.sin(fan), 0 * fan, np.cos(fan)], axis=1)
-    chosen[:, 0] += sign * _BESIDE
-    return np.concatenate([chosen, round_whorl])
-
-
-def _sheet(
-    hull: Hull, look: HairLook, paths: Doubles, thickness: float, layer: float, rng: np.random.Generator
-) -> Sheet:
+def _sheet(hull: Hull, look: HairLook, paths: Doubles, thickness: float, rng: np.random.Generator) -> Sheet:
     widths = rng.uniform(*_WIDTHS, len(paths) - 1)
     across = np.concatenate([[0.0], np.cumsum(widths)]) * LOCKS / widths.sum()
-    t = np.linspace(0.0, 1.0, _ROWS) ** 1.3 if layer == 1.0 else np.linspace(_INNER_FROM, 1.0, _INNER_ROWS)
+    t = np.linspace(0.0, 1.0, _ROWS) ** ROOTWARD
     uneven = np.interp(across, np.arange(LOCKS + 1), rng.uniform(0.0, 1.0, LOCKS + 1))
-    points, along = _resampled(paths, t, (1.0 - _UNEVEN * uneven) * (0.94 + 0.06 * layer))
-    ridge = np.sin(np.pi * (across % 1.0))[:, None] - 0.5
+    points, along = resampled(paths, _SHARE * (1.0 - _UNEVEN * uneven)[:, None] * t)
     tucked = _TUCKED + (1.0 - _TUCKED) * smoothstep(0.0, 1.5, across)[:, None]
     risen = _AT_PARTING + (1.0 - _AT_PARTING) * np.sin(0.5 * np.pi * np.clip(along / _RISE, 0.0, 1.0))
-    height = thickness * layer * tucked * risen + _RIDGE * np.sqrt(t) * ridge
-    height = np.maximum(height, 0.001 + layer * _LOWEST * smoothstep(0.0, 0.03, along))
-    points = points + height[..., None] * hull.outward(points)
+    near_root = 1.0 - smoothstep(0.03, 0.12, along)
+    layer = _LAYER + (_LAYER_AT_ROOT - _LAYER) * near_root
+    points = points + (thickness * layer * tucked * risen)[..., None] * hull.outward(points)
+    points = hull.push_out(points, 0.001 + _LOWEST * smoothstep(0.0, 0.03, along))
     if look.curl:
-        points = points + 0.006 * look.curl * waves(hull, points, along, uneven)
-    light = 0.55 + 0.45 * layer * (0.6 + 0.4 * smoothstep(0.0, 0.02, along))
-    places = np.stack(np.broadcast_arrays(across[:, None], t, light, layer + uneven[:, None]), axis=2)
+        points = points + 0.003 * look.curl * waves(hull, points, along, uneven)
+    light = _LIGHT + (_LIGHT_AT_ROOT - _LIGHT) * near_root
+    places = np.stack(np.broadcast_arrays(across[:, None], t, light, uneven[:, None]), axis=2)
     return Sheet(points.astype(np.float32), places.astype(np.float32), hull.centre)
 
 
-def _resampled(paths: Doubles, t: Doubles, share: Doubles) -> tuple[Doubles, Doubles]:
-    """``(C, R, 3)`` m and ``(C, R)`` m: points at parts ``t`` of each path's length times ``share``; the lengths."""
+def resampled(paths: Doubles, parts: Doubles) -> tuple[Doubles, Doubles]:
+    """``(C, R, 3)`` m and ``(C, R)`` m: points at ``parts (C, R)`` of each path's length; the lengths."""
     steps = np.linalg.norm(np.diff(paths, axis=1), axis=2)
     way = np.concatenate([np.zeros((len(paths), 1)), np.cumsum(steps, axis=1)], axis=1)
-    along = way[:, -1:] * share[:, None] * t
+    along = way[:, -1:] * parts
     points = np.empty((*along.shape, 3))
     for column, (line, known, wanted) in enumerate(zip(paths, way, along, strict=True)):
         points[column] = np.stack([np.interp(wanted, known, line[:, axis]) for axis in range(3)], axis=1)
     return points, along
-
-
-def flyaways(grown: list[Sheet], amount: Amount, look: HairLook, rng: np.random.Generator) -> StrandSet:
-    """Single hairs that leave the outer sheets: most of them frame the face."""
-    outer = _outer(grown)
-    count, t = amount.hairs, np.linspace(0.0, 1.0, amount.points)
-    column = np.floor(_COLUMNS * rng.random(count) ** _TO_THE_FRONT).astype(int)
-    lines = np.stack([sheet.points for sheet in outer]).astype(np.float64)[rng.integers(0, len(outer), count), column]
-    from_row, share = np.floor(rng.random(count) * 0.5 * _ROWS), rng.uniform(0.25, 0.6, count)
-    row = np.minimum(from_row[:, None] + share[:, None] * _ROWS * t, _ROWS - 1.001)
-    low, part = row.astype(int), (row % 1.0)[..., None]
-    each = np.arange(count)[:, None]
-    points = (1.0 - part) * lines[each, low] + part * lines[each, low + 1]
-    away = unit_rows(points - outer[0].centre)
-    off = rng.uniform(0.0, _AWAY, count)[:, None] * np.sin(np.pi * t * rng.uniform(0.5, 1.0, (count, 1)))
-    drift = rng.normal(0.0, 0.5 * _AWAY, (count, 1, 3)) * (t**2)[:, None]
-    points = points + off[..., None] * away + drift
-    paint = paints(look, np.full(count, 1.3), np.full(count, 0.7), rng, 0.4)
-    return StrandSet(points, amount.radius * rng.uniform(0.6, 1.2, count), paint, np.ones((count, len(t))),
-                  np.ones(count), np.ones(count))  # fmt: skip
 
 
 def sheets_mesh(grown: list[Sheet]) -> DrawnMesh:
@@ -210,59 +128,8 @@ def sheets_mesh(grown: list[Sheet]) -> DrawnMesh:
     return DrawnMesh.of(np.concatenate(triangles), place=place, along_rest=along_rest, facing=facing, sheet=sheet)
 
 
-def hanging_first(triangles: Indices, places: Floats) -> tuple[Indices, int]:
-    """``triangles (T, 3)`` from the lowest up, and how many of them hang: these are seen from inside too.
-
-    ``places (N, 3)`` m from the head's centre.
-    """
-    lowest = places[triangles, 1].min(axis=1)
-    return triangles[np.argsort(lowest, kind="stable")], int((lowest < _INSIDE_BELOW).sum())
-
-
-class SheetArray:
-    """Sheets on the GPU; they turn with the head."""
-
-    def __init__(self, context: Any, program: Any, grown: list[Sheet], model: HeadModel, centre: Doubles) -> None:
-        """``centre`` m: hair well above it has the head behind it and is seen from outside only."""
-        self._context, self._program, self._centre = context, program, centre
-        self._mesh = sheets_mesh(grown)
-        self._layout = self._mesh.layout(context, program)
-        self._skin = skin_round(model, centre)
-        self._arrays: dict[tuple[int, int, int] | None, tuple[Any, int]] = {}
-        self._drawn: tuple[Any, int] = self._seen_from(None)
-        self._flags: tuple[int, ...] = ()
-
-    def draw(self, eye: Doubles, *, fine: bool) -> None:
-        """Draw what ``eye``, in the model's axes, sees from outside; ``fine``: into several samples a pixel."""
-        self._program["least_cover"].value = 0.02 if fine else 0.5
-        self._flags = _COVERAGE if fine else ()
-        self._drawn = self._seen_from(sector_of(eye - self._centre))
-        self._draw("back", self._drawn[0].vertices)
-
-    def draw_inside(self) -> None:
-        """Draw what the eye of the last ``draw`` sees from inside, after the skin: hair beside face and neck."""
-        self._draw("front", self._drawn[1])
-
-    def _draw(self, culled: str, count: int) -> None:
-        context, (array, _) = self._context, self._drawn
-        context.cull_face = culled
-        context.enable(context.CULL_FACE)
-        for flag in self._flags:
-            context.enable_direct(flag)
-        array.render(vertices=count)
-        for flag in self._flags:
-            context.disable_direct(flag)
-        context.disable(context.CULL_FACE)
-        context.cull_face = "back"
-
-    def _seen_from(self, sector: tuple[int, int, int] | None) -> tuple[Any, int]:
-        """An array of what may be seen from a sector, and how many of its indices hang: these are seen from inside."""
-        if sector not in self._arrays:
-            places = self._mesh.fields["place"] - self._centre.astype(np.float32)
-            triangles = self._mesh.triangles
-            if sector is not None:
-                triangles = triangles[before_skin(places, self._skin, middle_of(sector))[triangles].any(axis=1)]
-            ordered, hanging = hanging_first(triangles, places)
-            buffer = self._context.buffer(ordered.tobytes())
-            self._arrays[sector] = self._context.vertex_array(self._program, self._layout, buffer), 3 * hanging
-        return self._arrays[sector]
+def sheet_places(places: Floats) -> Floats:
+    """``(N, 2)`` texture coordinates of ``places (N, 4)`` in what ``shaders/sheet_flat.vert.glsl`` paints."""
+    number, along = places[:, 0], places[:, 1]
+    card = FIRST_CARD + (number - FIRST_CARD) % (PAINTED - FIRST_CARD)
+    return np.stack([np.where(number < FIRST_CARD, number, card) / PAINTED, along], axis=1).astype(np.float32)

@@ -1,0 +1,66 @@
+"""Single hairs beside long hair: those that leave their card, most at the face, and short ones at the hairline."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from agentface.conventions import SIDES
+from agentface.head.look import HairLook
+from agentface.head.model import HeadModel
+from agentface.view.hair.hairline import Hairline, HairRoots
+from agentface.view.hair.ribbons import unit_rows
+from agentface.view.hair.sheets import Sheet
+from agentface.view.hair.strand_set import StrandSet, paints
+from agentface.view.hair.styles import Amount
+
+_AWAY = 0.004
+"""Metres that they leave it."""
+_LOOSE, _LOOSE_AWAY = 0.18, 2.5
+"""The part of them that leaves it farther, and how much farther."""
+_AT_FACE, _TO_THE_FRONT = 0.6, 5.0
+"""The part of them that gathers at the face, and the exponent with which it does."""
+_BABIES, _BABY_LENGTH, _BABY_WIDTH = 0.4, (0.005, 0.013), 0.7
+"""Short hairs for each flyaway; metres; their width beside that of flyaways."""
+_ACROSS = 1.8
+"""Half widths of a card within which they start."""
+
+
+def flyaways(cards: list[Sheet], amount: Amount, look: HairLook, rng: np.random.Generator) -> StrandSet:
+    """Single hairs that start on ``cards`` and leave them."""
+    count, t = amount.hairs, np.linspace(0.0, 1.0, amount.points)
+    grids = np.stack([card.points for card in cards]).astype(np.float64)
+    rows, each_side = grids.shape[2], len(cards) // len(SIDES)
+    place = rng.random(count) ** np.where(rng.random(count) < _AT_FACE, _TO_THE_FRONT, 1.0)
+    chosen = rng.integers(0, len(SIDES), count) * each_side + np.floor(each_side * place).astype(int)
+    middle, aside = grids[chosen].mean(axis=1), grids[chosen, 1] - grids[chosen, 0]
+    lines = middle + 0.5 * _ACROSS * rng.uniform(-1.0, 1.0, (count, 1, 1)) * aside
+    from_row, share = np.floor(rng.random(count) * 0.55 * rows), rng.uniform(0.3, 0.7, count)
+    row = np.minimum(from_row[:, None] + share[:, None] * rows * t, rows - 1.001)
+    low, part = row.astype(int), (row % 1.0)[..., None]
+    each = np.arange(count)[:, None]
+    points = (1.0 - part) * lines[each, low] + part * lines[each, low + 1]
+    away = unit_rows(points - cards[0].centre)
+    far = _AWAY * np.where(rng.random(count) < _LOOSE, _LOOSE_AWAY, 1.0)[:, None]
+    off = rng.uniform(0.0, 1.0, (count, 1)) * far * np.sin(np.pi * t * rng.uniform(0.4, 1.0, (count, 1)))
+    drift = rng.normal(0.0, 0.5, (count, 1, 3)) * (far * t**2)[..., None]
+    points = points + off[..., None] * away + drift
+    paint = paints(look, np.full(count, 1.3), np.full(count, 0.7), rng, 0.4)
+    return StrandSet(points, amount.radius * rng.uniform(0.6, 1.2, count), paint, np.ones((count, len(t))),
+                  np.ones(count), np.ones(count))  # fmt: skip
+
+
+def baby_hairs(model: HeadModel, amount: Amount, look: HairLook, beside: float, rng: np.random.Generator) -> StrandSet:
+    """Short hairs of the hairline, combed away from a parting ``beside`` metres from the middle of the head."""
+    line = Hairline(model, look.hairline)
+    roots = HairRoots.drawn(model, model.normals, line, round(_BABIES * amount.hairs), rng, elsewhere=0.0)
+    count, t = len(roots), np.linspace(0.0, 1.0, amount.points)[:, None]
+    n = roots.normals
+    side = np.sign(roots.places[:, :1] - beside)
+    combed = side * [0.8, 0.0, 0.0] + [0.0, 0.35, -0.5] + 0.45 * rng.normal(size=(count, 3))
+    combed = unit_rows(combed - n * (combed * n).sum(1, keepdims=True))
+    length = rng.uniform(*_BABY_LENGTH, (count, 1, 1))
+    fall = np.array([0.0, -0.35, 0.0])
+    points = roots.places[:, None] + length * (t * combed[:, None] + 0.35 * np.sin(2.0 * t) * n[:, None] + t**2 * fall)
+    paint = paints(look, np.full(count, 1.1), np.full(count, 0.45), rng, 0.4)
+    return StrandSet(points, _BABY_WIDTH * amount.radius * rng.uniform(0.6, 1.2, count), paint,
+                  np.ones((count, len(t))), np.ones(count), np.ones(count))  # fmt: skip
