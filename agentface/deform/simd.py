@@ -42,7 +42,8 @@ class _VectorModel(PrimitiveModel):
 _TYPE: Any = Vector()
 
 
-def _address(context: Any, builder: Any, signature: Any, args: Any) -> Any:
+def element_of(context: Any, builder: Any, signature: Any, args: Any) -> Any:
+    """Where in memory the element of an array stands, the first two of ``args``: for intrinsics."""
     array = context.make_array(signature.args[0])(context, builder, args[0])
     index = context.cast(builder, args[1], signature.args[1], types.intp)
     return builder.gep(array.data, [index])
@@ -63,7 +64,7 @@ def load(typing: Any, array: Any, index: Any) -> Any:
     """The vector at ``index`` of a float32 array."""
 
     def generate(context: Any, builder: Any, signature: Any, args: Any) -> Any:
-        return builder.load(_pointer(builder, _address(context, builder, signature, args)), align=4)
+        return builder.load(_pointer(builder, element_of(context, builder, signature, args)), align=4)
 
     return _TYPE(array, index), generate
 
@@ -73,7 +74,7 @@ def store(typing: Any, array: Any, index: Any, vector: Any) -> Any:
     """Writes a vector at ``index`` of a float32 array."""
 
     def generate(context: Any, builder: Any, signature: Any, args: Any) -> Any:
-        builder.store(args[2], _pointer(builder, _address(context, builder, signature, args)), align=4)
+        builder.store(args[2], _pointer(builder, element_of(context, builder, signature, args)), align=4)
         return context.get_dummy_value()
 
     return types.void(array, index, vector), generate

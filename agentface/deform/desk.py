@@ -1,0 +1,32 @@
+"""What one worker of the compiled pipeline has before it, as a kernel takes it fast: :class:`Desk`.
+
+numba takes a record of a hundred arrays apart at every call, which costs as much as a stage of the face; a desk it
+takes as one pointer.
+"""
+
+# mypy: disable-error-code="misc, no-untyped-call, untyped-decorator"
+# numba's extension points carry no types.
+from __future__ import annotations
+
+from typing import Any
+
+from numba import types
+from numba.experimental import structref
+
+
+@structref.register
+class DeskType(types.StructRef):
+    """The type of a desk."""
+
+    def preprocess_fields(self, fields: Any) -> Any:
+        """The fields with types that do not depend on their values."""
+        return tuple((name, types.unliteral(kind)) for name, kind in fields)
+
+
+class Desk(structref.StructRefProxy):
+    """A face's :class:`.tables.FaceTables` and the worker's :class:`.order_compiled.Scratch`; kernels make it."""
+
+
+structref.define_constructor(Desk, DeskType, ["tables", "scratch"])
+structref.define_attributes(DeskType)
+structref.define_boxing(DeskType, Desk)
