@@ -16,10 +16,12 @@ from llvmlite import ir
 from numba import extending, types
 from numba.core.datamodel import PrimitiveModel, register_default
 
-from agentface.deform.simd import element_of
+from agentface.deform.lanes import LANES
+from agentface.deform.simd import Vector, element_of
 
 _WIDTH = 4
 _ROW, _PAIR = ir.VectorType(ir.FloatType(), _WIDTH), ir.VectorType(ir.FloatType(), 2)
+_BLOCK, _LANES = ir.VectorType(ir.FloatType(), _WIDTH * LANES), Vector(types.float32)
 _I32 = ir.IntType(32)
 _THIRD = ir.Constant(_I32, 2)
 # numba's annotations keep the compiler's own arguments in a function's signature.
@@ -129,6 +131,38 @@ def dot(typing: Any, a: Any, b: Any) -> Any:
         return builder.fadd(builder.fadd(x, y), z)
 
     return types.float32(_TYPE, _TYPE), generate
+
+
+def _column(axis: int) -> Any:
+    @_intrinsic
+    def column(typing: Any, rows: Any, index: Any) -> Any:
+        def generate(context: Any, builder: Any, signature: Any, args: Any) -> Any:
+            start = element_of(context, builder, signature, args)
+            block = builder.load(builder.bitcast(start, _BLOCK.as_pointer()), align=4)
+            return _shuffled(builder, block, *range(axis, _WIDTH * LANES, _WIDTH))
+
+        return _LANES(rows, index), generate
+
+    return column
+
+
+xs_of, ys_of, zs_of = (_column(axis) for axis in range(3))  # the vectors of LANES wide rows from an index on
+
+
+@_intrinsic
+def put_columns(typing: Any, rows: Any, index: Any, x: Any, y: Any, z: Any) -> Any:
+    """Writes three vectors as LANES wide rows from ``index`` on of a float32 array."""
+
+    def generate(context: Any, builder: Any, signature: Any, args: Any) -> Any:
+        start = element_of(context, builder, signature, args)
+        pairs = ir.Constant(ir.VectorType(_I32, 2 * LANES), list(range(2 * LANES)))
+        flat, deep = builder.shuffle_vector(args[2], args[3], pairs), builder.shuffle_vector(args[4], args[4], pairs)
+        order = [axis * LANES + lane for lane in range(LANES) for axis in range(_WIDTH)]
+        block = builder.shuffle_vector(flat, deep, ir.Constant(ir.VectorType(_I32, len(order)), order))
+        builder.store(block, builder.bitcast(start, _BLOCK.as_pointer()), align=4)
+        return context.get_dummy_value()
+
+    return types.void(rows, index, x, y, z), generate
 
 
 def _define(symbol: Any, name: str) -> None:

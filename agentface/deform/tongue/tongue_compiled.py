@@ -1,16 +1,28 @@
-"""The tongue's loop; the numpy twin is :mod:`.tongue`; both share the code of :mod:`.sections` and :mod:`.holding`."""
+"""The tongue's loop; the numpy twin is :mod:`.tongue`; both share the code of :mod:`.sections` and :mod:`.holding`.
+
+The stations move one by one, the vertices LANES at once; double precision, as a place at the end of the teeth's wall is
+told by the root of what is left of its depth.
+"""
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 from typing import Any
 
-from agentface.conventions import Doubles, Floats
+import numpy as np
+
+from agentface.conventions import Doubles, Floats, Indices
+from agentface.deform import simd_numpy  # noqa: F401  # np.sin(vector)
+from agentface.deform.lanes import LANES
+from agentface.deform.simd import gather, load, store, store_whole, whole
 from agentface.deform.tongue import holding, passage_compiled, sections
+from agentface.deform.tongue.passage import COLUMNS
 from agentface.deform.tongue.sections import OUT, Sections
-from agentface.deform.tongue.tables import TongueTables
+from agentface.deform.tongue.tables import STATIONS, TongueBlocks, TongueTables
 from agentface.kernel import compiled_twin, kernel
+
+_X, _Y, _Z, _PITCH, _YAW, _FLAT, _CURL = range(7)  # rows of what the vertices need of the stations
+_NARROWEST = 1e-6 * (COLUMNS - 1)  # m, of a mouth whose columns are told apart
 
 _names: dict[str, Any] = {**vars(sections), **vars(holding), "__name__": __name__, "passage": passage_compiled}
 
@@ -39,40 +51,100 @@ def apply(tables: TongueTables, values: Floats, vertices: Floats, jaw: Floats, o
     limit(tables, values, vertices, jaw, now)
     bend(tables, values, now)
     settle(tables, jaw, now)
-    walls, limits = tables.passage.walls, now.limits
-    for vertex in range(tables.rest.shape[0]):
-        x, y, z = _placed(tables, now, vertex)
-        lips = lips_at(now, posed(jaw, x, y, z)[0])
-        x, z = held_aside(walls, limits, jaw, lips, x, y, z)
-        y = lifted(walls, limits, x, y, z)
-        at_x, at_y, at_z = posed(jaw, x, y, z)
-        up = lowered(walls, limits, lips_at(now, at_x), at_x, at_y, at_z)
-        out[vertex, 0], out[vertex, 1], out[vertex, 2] = x + up * jaw[1, 0], y + up * jaw[1, 1], z + up * jaw[1, 2]
+    stations = _stations(now)
+    lanes, column = np.empty((3, LANES)), np.empty(LANES, np.int32)
+    for block in range(tables.blocks.part.shape[0]):
+        _write(tables.blocks, tables.passage.walls, now, stations, jaw, block, column, lanes)
+        for lane in range(min(LANES, out.shape[0] - block * LANES)):
+            for axis in range(3):
+                out[block * LANES + lane, axis] = lanes[axis, lane]
 
 
 @kernel(error_model="numpy")
-def _placed(tables: TongueTables, now: Sections, vertex: int) -> tuple[float, float, float]:
-    """A vertex about the stations, m."""
-    k, part, out = tables.station[vertex], tables.part[vertex], now.limits[OUT]
-    pitch, yaw = _between(now.pitch, k, part), _between(now.yaw, k, part)
-    flat, curl = _between(now.flat, k, part), _between(now.curl, k, part)
-    x = tables.arm[vertex, 0] + out * tables.arm_out[vertex, 0]
-    h = flat * (tables.arm[vertex, 1] + out * tables.arm_out[vertex, 1])
-    length = tables.arm[vertex, 2] + out * tables.arm_out[vertex, 2]
-    turn = curl * x + 1e-12
-    sine, half = math.sin(turn), math.sin(0.5 * turn)
-    x, h = x * sine / turn - h * sine, h * math.cos(turn) + x * half * half / (0.5 * turn)
-    h, length = h * math.cos(pitch) + length * math.sin(pitch), length * math.cos(pitch) - h * math.sin(pitch)
-    x, length = x * math.cos(yaw) + length * math.sin(yaw), length * math.cos(yaw) - x * math.sin(yaw)
+def _stations(now: Sections) -> Doubles:
+    """``(7, STATIONS)``: what the vertices need of the stations."""
+    found = np.empty((_CURL + 1, STATIONS))
+    for k in range(STATIONS):
+        found[_X, k], found[_Y, k], found[_Z, k] = now.place[k, 0], now.place[k, 1], now.place[k, 2]
+        found[_PITCH, k], found[_YAW, k] = now.pitch[k], now.yaw[k]
+        found[_FLAT, k], found[_CURL, k] = now.flat[k], now.curl[k]
+    return found
+
+
+@kernel(error_model="numpy")
+def _write(
+    blocks: TongueBlocks,
+    walls: Doubles,
+    now: Sections,
+    stations: Doubles,
+    jaw: Floats,
+    block: int,
+    column: Indices,
+    lanes: Doubles,
+) -> None:
+    """Write one block of vertices, placed about the stations and held where they are free, into ``lanes``, m."""
+    x, y, z = _placed(blocks, stations, now.limits[OUT], block)
+    lip = _lips_at(now.across, now.lips, posed(jaw, x, y, z)[0], column)
+    x, z = held_aside(walls, now.limits, jaw, lip, x, y, z)
+    y = lifted(walls, now.limits, x, y, z)
+    at_x, at_y, at_z = posed(jaw, x, y, z)
+    up = lowered(walls, now.limits, _lips_at(now.across, now.lips, at_x, column), at_x, at_y, at_z)
+    store(lanes, 0, x + up * jaw[1, 0])
+    store(lanes, LANES, y + up * jaw[1, 1])
+    store(lanes, 2 * LANES, z + up * jaw[1, 2])
+
+
+@kernel(error_model="numpy")
+def _placed(blocks: TongueBlocks, stations: Doubles, out: float, block: int) -> Any:
+    """A block of vertices about the stations, m."""
+    at, arm, arm_out = block * LANES, 6 * block * LANES, (6 * block + 3) * LANES
+    x = load(blocks.arm, arm) + load(blocks.arm, arm_out) * out
+    h = _between(stations, blocks, _FLAT, at) * (
+        load(blocks.arm, arm + LANES) + load(blocks.arm, arm_out + LANES) * out
+    )
+    length = load(blocks.arm, arm + 2 * LANES) + load(blocks.arm, arm_out + 2 * LANES) * out
+    turn = _between(stations, blocks, _CURL, at) * x + 1e-12
+    sine, half = np.sin(turn), np.sin(turn * 0.5)
+    x, h = x * sine / turn - h * sine, h * np.cos(turn) + x * half * half / (turn * 0.5)
+    pitch = _between(stations, blocks, _PITCH, at)
+    cosine, sine = np.cos(pitch), np.sin(pitch)
+    h, length = h * cosine + length * sine, length * cosine - h * sine
+    yaw = _between(stations, blocks, _YAW, at)
+    cosine, sine = np.cos(yaw), np.sin(yaw)
     return (
-        _between(now.place[:, 0], k, part) + x,
-        _between(now.place[:, 1], k, part) + h,
-        _between(now.place[:, 2], k, part) + length,
+        _between(stations, blocks, _X, at) + x * cosine + length * sine,
+        _between(stations, blocks, _Y, at) + h,
+        _between(stations, blocks, _Z, at) + length * cosine - x * sine,
     )
 
 
 @kernel(error_model="numpy")
-def _between(rows: Doubles, station: int, part: float) -> float:
-    """``rows (K,)`` at a place along the tongue."""
-    here: float = rows[station]
-    return here + part * (rows[station + 1] - here)
+def _between(stations: Doubles, blocks: TongueBlocks, row: int, at: int) -> Any:
+    """A row of ``stations`` at each place of a block along the tongue."""
+    here = gather(stations, blocks.station, at, row * STATIONS)
+    return here + load(blocks.part, at) * (gather(stations, blocks.station, at, row * STATIONS + 1) - here)
+
+
+@kernel(error_model="numpy")
+def _lips_at(across: Doubles, lips: Doubles, x: Any, column: Indices) -> Any:
+    """The lips at each of a block of ``x`` m, whose columns are evenly ``across`` the mouth."""
+    first, last = across[0], across[COLUMNS - 1]
+    place = (first - x) * ((COLUMNS - 1) / max(first - last, _NARROWEST))
+    place = np.minimum(np.maximum(place, 0.0), COLUMNS - 1.0)
+    before = whole(np.minimum(place, COLUMNS - 2.0))
+    part = place - before
+    store_whole(column, 0, before)
+    return (
+        _of_lips(lips, column, 0, part),
+        _of_lips(lips, column, 1, part),
+        _of_lips(lips, column, 2, part),
+        _of_lips(lips, column, 3, part),
+        _of_lips(lips, column, 4, part),
+        _of_lips(lips, column, 5, part),
+    )
+
+
+@kernel(error_model="numpy")
+def _of_lips(lips: Doubles, column: Indices, row: int, part: Any) -> Any:
+    here = gather(lips, column, 0, row * COLUMNS)
+    return here + part * (gather(lips, column, 0, row * COLUMNS + 1) - here)
