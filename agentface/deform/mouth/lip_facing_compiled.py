@@ -35,7 +35,7 @@ class Facing(NamedTuple):
             how far towards the second; ``beyond (r, N)`` m, how far outside the ring's ends.
         near: ``(r, N)`` 0..1, how much of a push counts so near to these; 0 in the corners.
         x: ``(N,)`` m, of its vertices, ``rings (r, K)`` m of the other lip, from left to right, when it was found.
-        own: ``(N,)`` m, its heights, and ``best (N,)``, overwritten.
+        own: ``(N,)`` m, its heights, ``best (N,)`` and ``push (r, N)`` m, overwritten.
     """
 
     columns: int
@@ -54,6 +54,7 @@ class Facing(NamedTuple):
     rings: Floats
     own: Floats
     best: Floats
+    push: Floats
 
 
 class Mouth(NamedTuple):
@@ -139,6 +140,7 @@ def _new_facing(
         np.full((rings, others), _UNKNOWN, np.float32),
         np.zeros(count, np.float32),
         np.empty(count, np.float32),
+        np.empty((rings, count), np.float32),
     )
 
 

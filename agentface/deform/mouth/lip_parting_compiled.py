@@ -11,7 +11,7 @@ from agentface.deform.lanes import LANES
 from agentface.deform.mouth.contact_tables import ContactTables
 from agentface.deform.mouth.lip_facing_compiled import Facing, Mouth, look, overlap, take_heights
 from agentface.deform.mouth.lip_parting import FARTHEST, SEALED_ABOVE, SEALINGS, SPREAD, STEEP
-from agentface.deform.simd import larger, largest, load, smaller, splat, store
+from agentface.deform.simd import larger, largest, load, splat, store
 from agentface.kernel import kernel
 
 _ZERO, _QUARTER, _HALF, _ONE, _TWO = (np.float32(number) for number in (0.0, 0.25, 0.5, 1.0, 2.0))
@@ -111,44 +111,24 @@ def _push_apart(
     touched, rings = False, facing.place.shape[0]
     take_heights(first, heights, facing)
     for block in range(0, facing.own.shape[0], LANES):
-        most = _push(first, heights, facing, apart, 0, block)
-        for ring in range(1, rings):
-            most = larger(_push(first, heights, facing, apart, ring, block), most)
+        most = splat(_ZERO)
+        for ring in range(rings):
+            over = overlap(first, heights, facing, ring, block) - load(facing.at_rest, block) + apart
+            vector = over * _HALF * load(facing.near, ring * facing.own.shape[0] + block)
+            store(facing.push, ring * facing.own.shape[0] + block, vector)
+            most = larger(vector, most)
+        store(facing.best, block, most)
         if largest(most) > _ZERO:
             touched = True
+            for vertex in range(block, block + LANES):
+                own = facing.start + facing.column[vertex]
+                own_push[own] = max(own_push[own], facing.best[vertex])
             for ring in range(rings):
-                _hand_on(first, heights, facing, apart, ring, block, own_push, other_push)
+                for vertex in range(block, block + LANES):
+                    push = facing.push[ring, vertex]
+                    if push > _ZERO:
+                        other, portion = facing.others_start + facing.place[ring, vertex], facing.portion[ring, vertex]
+                        there, next_there = min(_ONE, STEEP * (_ONE - portion)), min(_ONE, STEEP * portion)
+                        other_push[other] = max(other_push[other], push * SPREAD * there)
+                        other_push[other + 1] = max(other_push[other + 1], push * SPREAD * next_there)
     return touched
-
-
-@kernel(error_model="numpy", inline="always")
-def _push(first: int, heights: Floats, facing: Facing, apart: np.float32, ring: int, block: int) -> Any:
-    """How far a block of vertices and a ring of the other lip have to go out of each other's way, each, m."""
-    over = overlap(first, heights, facing, ring, block) - load(facing.at_rest, block) + apart
-    return over * _HALF * load(facing.near, ring * facing.own.shape[0] + block)
-
-
-@kernel(error_model="numpy")
-def _hand_on(
-    first: int,
-    heights: Floats,
-    facing: Facing,
-    apart: np.float32,
-    ring: int,
-    block: int,
-    own_push: Floats,
-    other_push: Floats,
-) -> None:
-    """Raise the pushes of the columns that a block of vertices and a ring of the other lip touch in."""
-    lanes, at = np.empty((3, LANES), np.float32), ring * facing.own.shape[0] + block
-    push, portion = _push(first, heights, facing, apart, ring, block), load(facing.portion, at)
-    store(lanes, 0, push)
-    store(lanes, LANES, push * SPREAD * smaller(splat(_ONE), (_ONE - portion) * STEEP))
-    store(lanes, 2 * LANES, push * SPREAD * smaller(splat(_ONE), portion * STEEP))
-    for lane in range(LANES):
-        if lanes[0, lane] > _ZERO:
-            own = facing.start + facing.column[block + lane]
-            other = facing.others_start + facing.place[ring, block + lane]
-            own_push[own] = max(own_push[own], lanes[0, lane])
-            other_push[other] = max(other_push[other], lanes[1, lane])
-            other_push[other + 1] = max(other_push[other + 1], lanes[2, lane])
