@@ -149,20 +149,28 @@ def _column(axis: int) -> Any:
 xs_of, ys_of, zs_of = (_column(axis) for axis in range(3))  # the vectors of LANES wide rows from an index on
 
 
-@_intrinsic
-def put_columns(typing: Any, rows: Any, index: Any, x: Any, y: Any, z: Any) -> Any:
-    """Writes three vectors as LANES wide rows from ``index`` on of a float32 array."""
+def _put_columns(width: int) -> Any:
+    @_intrinsic
+    def put(typing: Any, rows: Any, index: Any, x: Any, y: Any, z: Any) -> Any:
+        def generate(context: Any, builder: Any, signature: Any, args: Any) -> Any:
+            start = element_of(context, builder, signature, args)
+            pairs = ir.Constant(ir.VectorType(_I32, 2 * LANES), list(range(2 * LANES)))
+            flat, deep = (
+                builder.shuffle_vector(args[2], args[3], pairs),
+                builder.shuffle_vector(args[4], args[4], pairs),
+            )
+            order = [axis * LANES + lane for lane in range(LANES) for axis in range(width)]
+            block = builder.shuffle_vector(flat, deep, ir.Constant(ir.VectorType(_I32, len(order)), order))
+            builder.store(block, builder.bitcast(start, block.type.as_pointer()), align=4)
+            return context.get_dummy_value()
 
-    def generate(context: Any, builder: Any, signature: Any, args: Any) -> Any:
-        start = element_of(context, builder, signature, args)
-        pairs = ir.Constant(ir.VectorType(_I32, 2 * LANES), list(range(2 * LANES)))
-        flat, deep = builder.shuffle_vector(args[2], args[3], pairs), builder.shuffle_vector(args[4], args[4], pairs)
-        order = [axis * LANES + lane for lane in range(LANES) for axis in range(_WIDTH)]
-        block = builder.shuffle_vector(flat, deep, ir.Constant(ir.VectorType(_I32, len(order)), order))
-        builder.store(block, builder.bitcast(start, _BLOCK.as_pointer()), align=4)
-        return context.get_dummy_value()
+        return types.void(rows, index, x, y, z), generate
 
-    return types.void(rows, index, x, y, z), generate
+    return put
+
+
+# write three vectors as LANES rows from an index on, of three numbers each or wide
+put_narrow_columns, put_columns = _put_columns(3), _put_columns(_WIDTH)
 
 
 def _define(symbol: Any, name: str) -> None:

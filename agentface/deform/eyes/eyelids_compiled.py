@@ -61,7 +61,7 @@ def apply(tables: EyelidsTables, values: Floats, points: Floats) -> None:
         _move(tables.vertex[side], tables.rest[side], tables.centre[side], tables.fields, levels, points)
 
 
-@kernel(error_model="numpy")
+@kernel(fastmath=True, error_model="numpy")
 def _move(
     vertex: Indices, rest: Floats, centre: Floats, fields: Floats, levels: tuple[np.float32, ...], points: Floats
 ) -> None:

@@ -9,7 +9,20 @@ import numpy as np
 
 from agentface.conventions import Floats, Indices
 from agentface.deform.finish.smooth_normals import SmoothNormalTables
-from agentface.deform.simd_rows import cross, dot, put_row, put_wide_row, row_at, wide_row_at
+from agentface.deform.lanes import LANES
+from agentface.deform.simd import inverse_root, where_positive
+from agentface.deform.simd_rows import (
+    cross,
+    dot,
+    put_narrow_columns,
+    put_row,
+    put_wide_row,
+    row_at,
+    wide_row_at,
+    xs_of,
+    ys_of,
+    zs_of,
+)
 from agentface.kernel import kernel
 
 _ZERO, _ONE = np.float32(0.0), np.float32(1.0)
@@ -21,7 +34,13 @@ def apply(tables: SmoothNormalTables, vertices: Floats, out: Floats) -> None:
     """Write the area-weighted unit normals of ``vertices (V, 3)`` m into ``out (V, 3)``; without any area, zero."""
     sums = np.zeros((vertices.shape[0], 4), np.float32)
     add_areas(vertices, tables.quads, sums)
-    for vertex in range(vertices.shape[0]):
+    whole = vertices.shape[0] // LANES * LANES
+    for start in range(0, whole, LANES):
+        x, y, z = xs_of(sums, 4 * start), ys_of(sums, 4 * start), zs_of(sums, 4 * start)
+        square = x * x + y * y + z * z
+        scale = where_positive(square - _SMALLEST, inverse_root(square))
+        put_narrow_columns(out, 3 * start, x * scale, y * scale, z * scale)
+    for vertex in range(whole, vertices.shape[0]):
         put_unit(sums, vertex, out)
 
 

@@ -142,12 +142,16 @@ def _spanned(model: HeadModel, prior: Doubles, surface: Surface) -> Doubles:
     return np.asarray(0.5 * (share + share[mirrored_controls()]))
 
 
+def drawn_of(tables: JawTables) -> Floats:
+    """``(N, 2)`` m: ``tables.drawn`` point by point."""
+    return np.moveaxis(tables.drawn, 1, 2).reshape(-1, 2)[: len(tables.where)]
+
+
 def apply(tables: JawTables, values: Floats, points: Floats) -> None:
     """Turn ``points (P, 3)`` m in place, to the pose ``values``; a closed jaw leaves them as they are."""
     if values[tables.parameter] == 0.0:
         return
-    drawn = np.moveaxis(tables.drawn, 1, 2).reshape(-1, 2)[: len(tables.where)]
-    points[tables.where, ::2] += values[tables.parameter] * drawn
+    points[tables.where, ::2] += values[tables.parameter] * drawn_of(tables)
     turn = tables.share[: len(tables.where)] * np.float32(tables.widest * values[tables.parameter])
     cosine, sine = np.cos(turn), np.sin(turn)
     up, forward = (points[tables.where, 1:] - tables.hinge).T

@@ -17,6 +17,7 @@ from agentface.deform.lanes import LANES
 from agentface.deform.simd import gather, load, store, store_whole, whole
 from agentface.deform.tongue import holding, passage_compiled, sections
 from agentface.deform.tongue.passage import COLUMNS
+from agentface.deform.tongue.passage_compiled import FAST
 from agentface.deform.tongue.sections import OUT, Sections
 from agentface.deform.tongue.tables import STATIONS, TongueBlocks, TongueTables
 from agentface.kernel import compiled_twin, kernel
@@ -28,7 +29,7 @@ _names: dict[str, Any] = {**vars(sections), **vars(holding), "__name__": __name_
 
 
 def _twin(function: Callable[..., Any]) -> Any:
-    made = _names[function.__name__] = compiled_twin(function, _names, error_model="numpy")
+    made = _names[function.__name__] = compiled_twin(function, _names, error_model="numpy", fastmath=FAST)
     return made
 
 
@@ -71,7 +72,7 @@ def _stations(now: Sections) -> Doubles:
     return found
 
 
-@kernel(error_model="numpy")
+@kernel(error_model="numpy", fastmath=FAST)
 def _write(
     blocks: TongueBlocks,
     walls: Doubles,
@@ -94,7 +95,7 @@ def _write(
     store(lanes, 2 * LANES, z + up * jaw[1, 2])
 
 
-@kernel(error_model="numpy")
+@kernel(error_model="numpy", fastmath=FAST)
 def _placed(blocks: TongueBlocks, stations: Doubles, out: float, block: int) -> Any:
     """A block of vertices about the stations, m."""
     at, arm, arm_out = block * LANES, 6 * block * LANES, (6 * block + 3) * LANES
@@ -118,14 +119,14 @@ def _placed(blocks: TongueBlocks, stations: Doubles, out: float, block: int) -> 
     )
 
 
-@kernel(error_model="numpy")
+@kernel(error_model="numpy", fastmath=FAST)
 def _between(stations: Doubles, blocks: TongueBlocks, row: int, at: int) -> Any:
     """A row of ``stations`` at each place of a block along the tongue."""
     here = gather(stations, blocks.station, at, row * STATIONS)
     return here + load(blocks.part, at) * (gather(stations, blocks.station, at, row * STATIONS + 1) - here)
 
 
-@kernel(error_model="numpy")
+@kernel(error_model="numpy", fastmath=FAST)
 def _lips_at(across: Doubles, lips: Doubles, x: Any, column: Indices) -> Any:
     """The lips at each of a block of ``x`` m, whose columns are evenly ``across`` the mouth."""
     first, last = across[0], across[COLUMNS - 1]
@@ -144,7 +145,7 @@ def _lips_at(across: Doubles, lips: Doubles, x: Any, column: Indices) -> Any:
     )
 
 
-@kernel(error_model="numpy")
+@kernel(error_model="numpy", fastmath=FAST)
 def _of_lips(lips: Doubles, column: Indices, row: int, part: Any) -> Any:
     here = gather(lips, column, 0, row * COLUMNS)
     return here + part * (gather(lips, column, 0, row * COLUMNS + 1) - here)
