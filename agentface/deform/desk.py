@@ -8,10 +8,14 @@ takes as one pointer.
 # numba's extension points carry no types.
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from numba import types
 from numba.experimental import structref
+
+if TYPE_CHECKING:
+    from agentface.deform.order_compiled import Scratch
+    from agentface.deform.tables import FaceTables
 
 
 @structref.register
@@ -24,7 +28,14 @@ class DeskType(types.StructRef):
 
 
 class Desk(structref.StructRefProxy):
-    """A face's :class:`.tables.FaceTables` and the worker's :class:`.order_compiled.Scratch`; kernels make it."""
+    """A face's tables and the worker's scratch; kernels make it and read it."""
+
+    tables: FaceTables
+    scratch: Scratch
+
+    if TYPE_CHECKING:
+
+        def __init__(self, tables: FaceTables, scratch: Scratch) -> None: ...
 
 
 structref.define_constructor(Desk, DeskType, ["tables", "scratch"])
