@@ -23,6 +23,7 @@ from agentface.deform.tongue.tables import STATIONS, TongueBlocks, TongueTables
 from agentface.kernel import compiled_twin, kernel
 
 _X, _Y, _Z, _PITCH, _YAW, _FLAT, _CURL = range(7)  # rows of what the vertices need of the stations
+_LIPS = 6  # rows of :attr:`.sections.Sections.lips`
 _NARROWEST = 1e-6 * (COLUMNS - 1)  # m, of a mouth whose columns are told apart
 
 _names: dict[str, Any] = {**vars(sections), **vars(holding), "__name__": __name__, "passage": passage_compiled}
@@ -99,31 +100,31 @@ def _write(
 def _placed(blocks: TongueBlocks, stations: Doubles, out: float, block: int) -> Any:
     """A block of vertices about the stations, m."""
     at, arm, arm_out = block * LANES, 6 * block * LANES, (6 * block + 3) * LANES
+    here, part = np.empty((_CURL + 1, LANES)), load(blocks.part, at)
+    for row in range(_CURL + 1):
+        _between(stations, blocks.station, at, row * STATIONS, part, here, row * LANES)
     x = load(blocks.arm, arm) + load(blocks.arm, arm_out) * out
-    h = _between(stations, blocks, _FLAT, at) * (
-        load(blocks.arm, arm + LANES) + load(blocks.arm, arm_out + LANES) * out
-    )
+    h = load(blocks.arm, arm + LANES) + load(blocks.arm, arm_out + LANES) * out
     length = load(blocks.arm, arm + 2 * LANES) + load(blocks.arm, arm_out + 2 * LANES) * out
-    turn = _between(stations, blocks, _CURL, at) * x + 1e-12
+    h, turn = h * load(here, _FLAT * LANES), load(here, _CURL * LANES) * x + 1e-12
     sine, half = np.sin(turn), np.sin(turn * 0.5)
     x, h = x * sine / turn - h * sine, h * np.cos(turn) + x * half * half / (turn * 0.5)
-    pitch = _between(stations, blocks, _PITCH, at)
+    pitch, yaw = load(here, _PITCH * LANES), load(here, _YAW * LANES)
     cosine, sine = np.cos(pitch), np.sin(pitch)
     h, length = h * cosine + length * sine, length * cosine - h * sine
-    yaw = _between(stations, blocks, _YAW, at)
     cosine, sine = np.cos(yaw), np.sin(yaw)
     return (
-        _between(stations, blocks, _X, at) + x * cosine + length * sine,
-        _between(stations, blocks, _Y, at) + h,
-        _between(stations, blocks, _Z, at) + length * cosine - x * sine,
+        load(here, _X * LANES) + x * cosine + length * sine,
+        load(here, _Y * LANES) + h,
+        load(here, _Z * LANES) + length * cosine - x * sine,
     )
 
 
 @kernel(error_model="numpy", fastmath=FAST)
-def _between(stations: Doubles, blocks: TongueBlocks, row: int, at: int) -> Any:
-    """A row of ``stations`` at each place of a block along the tongue."""
-    here = gather(stations, blocks.station, at, row * STATIONS)
-    return here + load(blocks.part, at) * (gather(stations, blocks.station, at, row * STATIONS + 1) - here)
+def _between(rows: Doubles, index: Indices, at: int, first: int, part: Any, out: Doubles, place: int) -> None:
+    """Write what of the row of ``rows`` from ``first`` on lies ``part`` of the way from ``index`` to the next one."""
+    here = gather(rows, index, at, first)
+    store(out, place, here + part * (gather(rows, index, at, first + 1) - here))
 
 
 @kernel(error_model="numpy", fastmath=FAST)
@@ -135,17 +136,14 @@ def _lips_at(across: Doubles, lips: Doubles, x: Any, column: Indices) -> Any:
     before = whole(np.minimum(place, COLUMNS - 2.0))
     part = place - before
     store_whole(column, 0, before)
+    there = np.empty((_LIPS, LANES))
+    for row in range(_LIPS):
+        _between(lips, column, 0, row * COLUMNS, part, there, row * LANES)
     return (
-        _of_lips(lips, column, 0, part),
-        _of_lips(lips, column, 1, part),
-        _of_lips(lips, column, 2, part),
-        _of_lips(lips, column, 3, part),
-        _of_lips(lips, column, 4, part),
-        _of_lips(lips, column, 5, part),
+        load(there, 0),
+        load(there, LANES),
+        load(there, 2 * LANES),
+        load(there, 3 * LANES),
+        load(there, 4 * LANES),
+        load(there, 5 * LANES),
     )
-
-
-@kernel(error_model="numpy", fastmath=FAST)
-def _of_lips(lips: Doubles, column: Indices, row: int, part: Any) -> Any:
-    here = gather(lips, column, 0, row * COLUMNS)
-    return here + part * (gather(lips, column, 0, row * COLUMNS + 1) - here)
