@@ -14,6 +14,7 @@ import numpy as np
 
 from agentface.conventions import Floats, Indices
 from agentface.deform.eyes.eyelids import HOLD, EyelidsTables
+from agentface.deform.lanes import LANES
 from agentface.head.model import HeadModel
 from agentface.parameters import indices_of
 
@@ -32,7 +33,8 @@ class MorphTables(NamedTuple):
         first: int32 ``(K + 1,)``, where each morph's entries begin.
         vertices: int32 ``(N,)``, the vertices that a morph moves.
         ways: float32 ``(N, 3)`` m, how far at the end of the range.
-        shares: float32 ``(N,)`` 0..1, the part of the jaw's turn that each makes.
+        moved: int32 ``(M,)``, the vertices that any morph moves; ``places (N,)`` are those of ``vertices`` among them.
+        shares: float32 0..1, the part of the jaw's turn that each of these makes; ``(M,)``, and 0 up to a whole block.
         widest: rad, the jaw's whole turn.
         jaw: where ``jaw_open`` stands in a pose.
         whole: int32 ``(2,)``, where the whole muscle's pucker and press stand.
@@ -44,6 +46,8 @@ class MorphTables(NamedTuple):
     first: Indices
     vertices: Indices
     ways: Floats
+    moved: Indices
+    places: Indices
     shares: Floats
     widest: float
     jaw: int
@@ -58,6 +62,7 @@ def prepare(model: HeadModel, of_eyelids: EyelidsTables) -> MorphTables:
     counts = [len(morph.vertices) for morph in placed]
     vertices = np.concatenate([np.zeros(0), *(morph.vertices for morph in placed)]).astype(np.int32)
     ways = np.concatenate([np.zeros((0, 3)), *(morph.ways for morph in placed)])
+    moved, places = np.unique(vertices, return_inverse=True)
     return MorphTables(
         parameters=np.array([morph.index for morph in placed], np.int32),
         signs=np.array([morph.sign for morph in placed], np.float32),
@@ -65,7 +70,9 @@ def prepare(model: HeadModel, of_eyelids: EyelidsTables) -> MorphTables:
         first=np.concatenate([[0], np.cumsum(counts)]).astype(np.int32),
         vertices=vertices,
         ways=(free[vertices, None] * ways).astype(np.float32),
-        shares=np.ascontiguousarray(model.jaw_weights[vertices]),
+        moved=moved.astype(np.int32),
+        places=places.astype(np.int32),
+        shares=np.append(model.jaw_weights[moved], np.zeros(-len(moved) % LANES)).astype(np.float32),
         widest=math.radians(model.jaw.widest_deg),
         jaw=indices_of("jaw_open")[0],
         whole=np.array([indices_of(name)[0] for name in WHOLE_LIPS], np.int32),
@@ -118,7 +125,7 @@ def apply(tables: MorphTables, values: Floats, points: Floats) -> None:
     active = np.repeat(levels, np.diff(tables.first))
     chosen = active > 0.0
     ways = active[chosen, None] * tables.ways[chosen]
-    angle = tables.shares[chosen] * np.float32(tables.widest * values[tables.jaw])
+    angle = tables.shares[tables.places[chosen]] * np.float32(tables.widest * values[tables.jaw])
     cosine, sine = np.cos(angle), np.sin(angle)
     turned = np.stack([ways[:, 0], cosine * ways[:, 1] - sine * ways[:, 2], sine * ways[:, 1] + cosine * ways[:, 2]], 1)
     np.add.at(points, tables.vertices[chosen], turned)

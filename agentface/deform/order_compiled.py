@@ -14,6 +14,7 @@ from agentface.conventions import Doubles, Floats
 from agentface.deform import midpoints_compiled as midpoints  # noqa: F401  # the twin's names
 from agentface.deform import morphs_compiled as morphs  # noqa: F401
 from agentface.deform import order
+from agentface.deform.desk import Desk
 from agentface.deform.eyes import eyelids_compiled as eyelids  # noqa: F401
 from agentface.deform.finish.order import FinishStage
 from agentface.deform.finish.order_compiled import finish
@@ -33,7 +34,7 @@ from agentface.deform.tables import FaceTables
 from agentface.kernel import compiled_twin, kernel
 from agentface.parameters import VECTOR_MUSCLES, indices_of
 
-__all__ = ["Scratch", "deform", "finish", "frames", "new_scratch", "shape"]
+__all__ = ["Scratch", "deform", "finish", "frames", "new_desk", "new_scratch", "shape"]
 
 _FIRST_MUSCLE = indices_of(VECTOR_MUSCLES[0])[0]
 _FIRST, _LAST = int(Stage.VOLUMES), int(Stage.MIDPOINTS)
@@ -84,11 +85,18 @@ def shape(tables: FaceTables, scratch: Scratch, last: int, values: Floats) -> No
 
 
 @kernel(error_model="numpy")
-def frames(tables: FaceTables, scratch: Scratch, first: int, last: int, poses: Floats, faces: FaceArrays) -> None:
+def new_desk(tables: FaceTables, scratch: Scratch) -> Desk:
+    """The desk of one worker, for :func:`frames`."""
+    return Desk(tables, scratch)
+
+
+@kernel(error_model="numpy")
+def frames(desk: Desk, first: int, last: int, poses: Floats, faces: FaceArrays) -> None:
     """Write the faces of ``poses[first:last]`` into ``faces``, a row a face.
 
     ``poses`` is float32 ``(B, COUNT)``, contractions in 0..1; the vector muscles combine in parallel.
     """
+    tables, scratch = desk.tables, desk.scratch
     for index in range(first, last):
         values = poses[index]
         shape(tables, scratch, _LAST, values)

@@ -54,7 +54,8 @@ class GeometricDeformer:
             self._deform, self._finish = order_compiled.deform, order_compiled.finish
             self._slice = lips_compiled.slice_steps
             if combine == "parallel":
-                self.frames = partial(order_compiled.frames, self._tables, order_compiled.new_scratch(self._tables))
+                desk = order_compiled.new_desk(self._tables, order_compiled.new_scratch(self._tables))
+                self.frames = partial(order_compiled.frames, desk)
         self._rows = self._new_rows()
         self._arrays, self._shown = self._rows.arrays(), self._rows[0]
 

@@ -6,7 +6,7 @@ jaw and tongue, and of the tongue all vertices that are not read.
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -17,7 +17,7 @@ from agentface.deform.geometry import FaceArrays, FaceGeometry
 from agentface.deform.order import Stage
 from agentface.deform.order_compiled import Scratch, finish, shape
 from agentface.deform.tables import FaceTables
-from agentface.deform.tongue.tables import PER_VERTEX, TongueTables
+from agentface.deform.tongue.tables import TongueTables, only
 from agentface.head.model import HeadModel
 from agentface.kernel import kernel
 from agentface.mpeg4.readings import Kind, Readings
@@ -58,8 +58,7 @@ def _read_of_tongue(tongue: TongueTables, readings: Readings) -> tuple[TongueTab
     vertex = readings.vertex.copy()
     vertex[places] = rows[: places.sum()]
     roll = rows[places.sum() :].astype(readings.roll.dtype)
-    few: dict[str, Any] = {name: np.ascontiguousarray(getattr(tongue, name)[used]) for name in PER_VERTEX}
-    return tongue._replace(**few), readings._replace(vertex=vertex, roll=roll)
+    return only(tongue, used), readings._replace(vertex=vertex, roll=roll)
 
 
 @kernel(error_model="numpy")

@@ -37,7 +37,7 @@ def opened(face, opening, points=None):
 def drawn(face, opening):
     """``(V, 3)`` m: how far an opening draws the skin back, before it turns."""
     moves = np.zeros((len(FACES[face].vertices), 3))
-    moves[TABLES[face].where, ::2] = opening * TABLES[face].drawn
+    moves[TABLES[face].where, ::2] = opening * jaw.drawn_of(TABLES[face])
     return moves
 
 

@@ -27,7 +27,8 @@ from agentface.deform.eyes.eyelids import (
     EyelidsTables,
 )
 from agentface.deform.lanes import LANES
-from agentface.deform.simd import inverse_root, larger, load, splat, store
+from agentface.deform.simd import inverse_root, larger, load, splat
+from agentface.deform.simd_rows import put_columns, put_row, put_wide_row, row_at, wide_row_at, xs_of, ys_of, zs_of
 from agentface.kernel import kernel
 
 FIELDS = FLOOR + 1
@@ -60,25 +61,24 @@ def apply(tables: EyelidsTables, values: Floats, points: Floats) -> None:
         _move(tables.vertex[side], tables.rest[side], tables.centre[side], tables.fields, levels, points)
 
 
-@kernel(error_model="numpy")
+@kernel(fastmath=True, error_model="numpy")
 def _move(
     vertex: Indices, rest: Floats, centre: Floats, fields: Floats, levels: tuple[np.float32, ...], points: Floats
 ) -> None:
     c, raised, o, pitch, tight, alone, way, side, ahead = levels
     cx, cy, cz = splat(centre[0]), splat(centre[1]), splat(centre[2])
-    lanes = np.empty((3, LANES), dtype=np.float32)
+    rows = np.empty((LANES, 4), dtype=np.float32)
     for block in range(vertex.shape[0]):
         for lane in range(LANES):
-            row = vertex[block, lane]
-            lanes[0, lane], lanes[1, lane], lanes[2, lane] = points[row, 0], points[row, 1], points[row, 2]
+            put_wide_row(rows, 4 * lane, row_at(points, 3 * vertex[block, lane]))
         first, home = block * FIELDS * LANES, block * 3 * LANES
         kept = _ONE - load(fields, first + HOLD * LANES)
         hx, hy, hz = load(rest, home), load(rest, home + LANES), load(rest, home + 2 * LANES)
         across = load(fields, first + ACROSS * LANES) * way + load(fields, first + TIGHT_ACROSS * LANES) * tight
         up = load(fields, first + UP * LANES) * way + load(fields, first + TIGHT_UP * LANES) * tight
-        x = hx + kept * (load(lanes, 0) - hx) + across * side
-        y = hy + kept * (load(lanes, LANES) - hy) + up
-        z = hz + kept * (load(lanes, 2 * LANES) - hz)
+        x = hx + kept * (xs_of(rows, 0) - hx) + across * side
+        y = hy + kept * (ys_of(rows, 0) - hy) + up
+        z = hz + kept * (zs_of(rows, 0) - hz)
         angle = load(fields, first + CLOSE * LANES) * c + load(fields, first + HIGHER * LANES) * raised
         angle = angle + load(fields, first + WIDEN * LANES) * o + load(fields, first + FOLLOW * LANES) * pitch
         angle = angle + load(fields, first + TIGHTEN * LANES) * tight + load(fields, first + SLANT * LANES) * alone
@@ -92,9 +92,6 @@ def _move(
         ax, ay, az = x - cx, y - cy, z - (cz + splat(ahead))
         inverse = inverse_root(larger(ax * ax + ay * ay + az * az, splat(_TINY)))
         outward = larger(load(fields, first + FLOOR * LANES) * inverse, splat(_ONE)) - _ONE
-        store(lanes, 0, x + outward * ax)
-        store(lanes, LANES, y + outward * ay)
-        store(lanes, 2 * LANES, z + outward * az)
+        put_columns(rows, 0, x + outward * ax, y + outward * ay, z + outward * az)
         for lane in range(LANES):
-            row = vertex[block, lane]
-            points[row, 0], points[row, 1], points[row, 2] = lanes[0, lane], lanes[1, lane], lanes[2, lane]
+            put_row(points, 3 * vertex[block, lane], wide_row_at(rows, 4 * lane))

@@ -5,15 +5,14 @@ from __future__ import annotations
 from enum import IntEnum
 from typing import NamedTuple
 
-import numpy as np
-
-from agentface.conventions import Floats, Indices
+from agentface.conventions import Floats
 from agentface.deform.eyes import eyeballs
 from agentface.deform.eyes.eyeballs import EyesTables
-from agentface.deform.finish import chest, head_turn, neck, teeth, wrinkle_normals, wrinkles
+from agentface.deform.finish import chest, head_turn, neck, smooth_normals, teeth, wrinkle_normals, wrinkles
 from agentface.deform.finish.chest import ChestTables
 from agentface.deform.finish.head_turn import HeadTurnTables
 from agentface.deform.finish.neck import NeckTables
+from agentface.deform.finish.smooth_normals import SmoothNormalTables
 from agentface.deform.finish.teeth import TeethTables
 from agentface.deform.finish.wrinkle_normals import WrinkleNormalTables
 from agentface.deform.finish.wrinkles import WrinkleTables
@@ -22,7 +21,6 @@ from agentface.deform.tongue import tables as tongue_tables
 from agentface.deform.tongue import tongue
 from agentface.deform.tongue.tables import TongueTables
 from agentface.head.model import HeadModel
-from agentface.mesh import normals
 
 
 class FinishStage(IntEnum):
@@ -39,9 +37,9 @@ class FinishStage(IntEnum):
 
 
 class FinishTables(NamedTuple):
-    """What the last stages need of a face: the ``(T, 3)`` int32 triangles of its skin, and a record a stage."""
+    """What the last stages need of a face: a record a stage."""
 
-    triangles: Indices
+    smooth_normals: SmoothNormalTables
     wrinkles: WrinkleTables
     wrinkle_normals: WrinkleNormalTables
     eyes: EyesTables
@@ -54,11 +52,11 @@ class FinishTables(NamedTuple):
 
 def prepare(model: HeadModel) -> FinishTables:
     """The tables of a face."""
-    of_wrinkles = wrinkles.prepare(model)
+    of_wrinkles, of_skin = wrinkles.prepare(model), smooth_normals.prepare(model)
     return FinishTables(
-        triangles=np.ascontiguousarray(model.triangles, np.int32),
+        smooth_normals=of_skin,
         wrinkles=of_wrinkles,
-        wrinkle_normals=wrinkle_normals.prepare(model, of_wrinkles),
+        wrinkle_normals=wrinkle_normals.prepare(of_skin, of_wrinkles),
         eyes=eyeballs.prepare(model),
         teeth=teeth.prepare(model),
         tongue=tongue_tables.prepare(model),
@@ -72,7 +70,7 @@ def finish(first: int, last: int, tables: FinishTables, values: Floats, face: Fa
     """The stages ``first`` to ``last`` on one face whose ``vertices`` are the deformed skin, at the pose ``values``."""
     for stage in range(first, last + 1):
         if stage == FinishStage.SMOOTH_NORMALS:
-            normals.write_normals(face.vertices, tables.triangles, face.smooth_normals)
+            smooth_normals.apply(tables.smooth_normals, face.vertices, face.smooth_normals)
         elif stage == FinishStage.WRINKLES:
             wrinkles.levels(tables.wrinkles, values, face.wrinkle_levels)
             wrinkles.heights(tables.wrinkles, values, face.wrinkles)

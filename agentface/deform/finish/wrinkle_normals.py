@@ -7,8 +7,8 @@ from typing import NamedTuple
 import numpy as np
 
 from agentface.conventions import Floats, Indices
+from agentface.deform.finish.smooth_normals import SmoothNormalTables
 from agentface.deform.finish.wrinkles import WrinkleTables
-from agentface.head.model import HeadModel
 from agentface.mesh.normals import vertex_normals
 
 
@@ -19,24 +19,21 @@ class WrinkleNormalTables(NamedTuple):
         triangles: ``(T, 3)`` int32, all of the skin.
         raised: ``(R,)`` int32, the vertices that a wrinkle can raise.
         near: ``(N,)`` int32, the vertices of their triangles: normals that can change.
-        around: ``(A, 3)`` int32, the triangles of those, in their order among all.
-        border: ``(B,)`` int32, the other vertices of these.
+        around: ``(A, 4)`` int32, the quads of those, in their order among all.
     """
 
     triangles: Indices
     raised: Indices
     near: Indices
     around: Indices
-    border: Indices
 
 
-def prepare(model: HeadModel, wrinkles: WrinkleTables) -> WrinkleNormalTables:
+def prepare(smooth: SmoothNormalTables, wrinkles: WrinkleTables) -> WrinkleNormalTables:
     """The tables of a face."""
-    triangles = np.ascontiguousarray(model.triangles, np.int32)
     raised = np.unique(wrinkles.vertices)
-    near = np.unique(triangles[np.isin(triangles, raised).any(axis=1)])
-    around = triangles[np.isin(triangles, near).any(axis=1)]
-    return WrinkleNormalTables(triangles, raised, near, around, np.setdiff1d(around, near))
+    near = np.unique(smooth.triangles[np.isin(smooth.triangles, raised).any(axis=1)])
+    around = smooth.quads[np.isin(smooth.quads, near).any(axis=1)]
+    return WrinkleNormalTables(smooth.triangles, raised, near, around)
 
 
 def apply(tables: WrinkleNormalTables, heights: Floats, vertices: Floats, smooth: Floats, out: Floats) -> None:

@@ -7,9 +7,10 @@ from typing import Any
 import numpy as np
 
 from agentface.conventions import Floats
+from agentface.deform.finish.smooth_normals_compiled import add_areas, put_unit
 from agentface.deform.finish.wrinkle_normals import WrinkleNormalTables
+from agentface.deform.simd_rows import put_wide_row, row_of
 from agentface.kernel import kernel
-from agentface.mesh.normals_compiled import add_areas, make_unit
 
 _ZERO = np.float32(0.0)
 
@@ -21,21 +22,17 @@ def apply(tables: WrinkleNormalTables, heights: Floats, vertices: Floats, smooth
     for index in range(before.shape[0]):
         after[index] = before[index]
     if _highest(tables, heights) > _ZERO:
-        _renew(tables, vertices, smooth, out)
+        _renew(tables, vertices, out)
 
 
 @kernel(error_model="numpy", fastmath=True)
-def _renew(tables: WrinkleNormalTables, vertices: Floats, smooth: Floats, out: Floats) -> None:
+def _renew(tables: WrinkleNormalTables, vertices: Floats, out: Floats) -> None:
+    sums = np.empty((vertices.shape[0], 4), np.float32)  # what is not near is added to and never read
     for place in range(tables.near.shape[0]):
-        for axis in range(3):
-            out[tables.near[place], axis] = _ZERO
-    add_areas(vertices, tables.around, out)
+        put_wide_row(sums, 4 * tables.near[place], row_of(_ZERO))
+    add_areas(vertices, tables.around, sums)
     for place in range(tables.near.shape[0]):
-        make_unit(out, tables.near[place])
-    for place in range(tables.border.shape[0]):
-        vertex = tables.border[place]
-        for axis in range(3):
-            out[vertex, axis] = smooth[vertex, axis]
+        put_unit(sums, tables.near[place], out)
 
 
 @kernel(error_model="numpy")

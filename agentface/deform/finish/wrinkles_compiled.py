@@ -6,6 +6,7 @@ import numpy as np
 
 from agentface.conventions import Floats
 from agentface.deform.finish.wrinkles import WrinkleTables
+from agentface.deform.simd_rows import put_row, row_at
 from agentface.kernel import kernel
 
 _ZERO, _ONE = np.float32(0.0), np.float32(1.0)
@@ -39,6 +40,7 @@ def heights(tables: WrinkleTables, values: Floats, out: Floats) -> None:
 @kernel(error_model="numpy")
 def raise_vertices(tables: WrinkleTables, heights: Floats, normals: Floats, vertices: Floats) -> None:
     """Moves ``vertices (V, 3)`` along ``normals (V, 3)`` by ``heights (V,)`` m."""
-    for vertex in tables.raised:
-        for axis in range(3):
-            vertices[vertex, axis] += heights[vertex] * normals[vertex, axis]
+    for place in range(tables.raised.shape[0]):
+        vertex = tables.raised[place]
+        at = 3 * vertex
+        put_row(vertices, at, row_at(vertices, at) + row_at(normals, at) * heights[vertex])

@@ -52,6 +52,7 @@ def prepare(model: HeadModel) -> ContactTables:
     share = np.broadcast_to(np.minimum(1.0, 2.0 * of_lower), grid.vertices.shape).ravel()[pushed]
     return ContactTables(
         grid=grid.vertices,
+        lips=np.ascontiguousarray(grid.vertices[:, np.concatenate([upper, lower])]),
         first=_FIRST_RING,
         last=_LAST_RING,
         seam=SEAM_RING,

@@ -12,6 +12,7 @@ from agentface.deform.morphs_compiled import jaw_slide
 from agentface.deform.mouth.contact import APART, PARTINGS, ROUNDS, TOUCH
 from agentface.deform.mouth.contact_tables import ContactTables
 from agentface.deform.mouth.lip_bite_compiled import bite
+from agentface.deform.mouth.lip_facing_compiled import look, look_again, put
 from agentface.deform.mouth.lip_parting_compiled import close, part, seal
 from agentface.kernel import kernel
 
@@ -26,19 +27,24 @@ def apply(tables: ContactTables, values: Floats, points: Floats) -> None:
     for k in range(tables.morphs.shape[0]):
         apart += abs(values[tables.morphs[k]])
     apart = APART * min(_ONE, apart)
+    mouth = look(tables, points)
     if values[tables.seal] > _ZERO:
-        seal(tables, values[tables.seal], apart, points)
+        seal(tables, values[tables.seal], apart, mouth)
     for _ in range(ROUNDS if values[tables.press] > _ZERO else 1):
-        close(tables, values[tables.press], points)
-        part(tables, points, apart)
+        close(tables, values[tables.press], mouth)
+        part(tables, apart, mouth)
+    put(tables, mouth, points)
     if values[tables.bite] > _ZERO:
         bite(tables, values[tables.bite], points)
     _hold_out(tables, values, values[tables.bite], points)
+    look_again(tables, points, mouth)
     for _ in range(PARTINGS):
-        if not part(tables, points, apart):
+        if not part(tables, apart, mouth):
             break
     if values[tables.seal] > _ZERO:
-        seal(tables, values[tables.seal], apart, points)
+        seal(tables, values[tables.seal], apart, mouth)
+    put(tables, mouth, points)
+    if values[tables.seal] > _ZERO:
         _hold_out(tables, values, values[tables.bite] * (_ONE - values[tables.seal]), points)
 
 

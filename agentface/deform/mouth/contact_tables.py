@@ -13,6 +13,7 @@ class ContactTables(NamedTuple):
 
     Attributes:
         grid: ``(R, N)`` vertices of the lips, as in :class:`agentface.deform.mouth.lip_grid.LipGrid`.
+        lips: ``(R, U + L)``, the columns of the upper lip, then those of the lower one.
         first, last: the rings between which the lips may touch, both included.
         seam: the ring where they touch.
         upper, lower: ``(U,)``, ``(L,)``: the columns of either lip from the left corner to the right one, of which
@@ -34,6 +35,7 @@ class ContactTables(NamedTuple):
     """
 
     grid: Indices
+    lips: Indices
     first: int
     last: int
     seam: int

@@ -50,8 +50,8 @@ class JawTables(NamedTuple):
 
     Attributes:
         where: ``(N,)`` int32, rows of the points that follow the jaw.
-        share: float32 0..1, the part of the turn that each makes; ``(N,)``, and 0 up to a whole block of LANES.
-        drawn: ``(N, 2)`` float32 m, how far each goes along x and z at the whole opening.
+        share: float32 0..1, the part of the turn that each makes; ``(N,)``, and 0 up to B whole blocks of LANES.
+        drawn: ``(B, 2, LANES)`` float32 m, how far each goes along x and z at the whole opening.
         hinge: ``(2,)`` float32 m, y and z of the axis.
         widest: rad, the turn of the whole opening.
         parameter: where ``jaw_open`` stands in a pose.
@@ -78,10 +78,11 @@ def prepare(model: HeadModel, follow: Follow | None = None, surface: Surface | N
             mean = _spanned(model, mean.astype(np.float64), surface)
         share = np.concatenate([share, mean]).astype(np.float32)
     where = np.flatnonzero((share > 0.0) | drawn.any(axis=1)).astype(np.int32)
+    blocks = np.concatenate([drawn[where], np.zeros((-len(where) % LANES, 2))])
     return JawTables(
         where=where,
         share=np.append(share[where], np.zeros(-len(where) % LANES)).astype(np.float32),
-        drawn=np.ascontiguousarray(drawn[where], np.float32),
+        drawn=np.ascontiguousarray(np.moveaxis(blocks.reshape(-1, LANES, 2), 2, 1), np.float32),
         hinge=np.array(model.jaw.pivot[1:], np.float32),
         widest=math.radians(model.jaw.widest_deg),
         parameter=indices_of("jaw_open")[0],
@@ -141,11 +142,16 @@ def _spanned(model: HeadModel, prior: Doubles, surface: Surface) -> Doubles:
     return np.asarray(0.5 * (share + share[mirrored_controls()]))
 
 
+def drawn_of(tables: JawTables) -> Floats:
+    """``(N, 2)`` m: ``tables.drawn`` point by point."""
+    return np.moveaxis(tables.drawn, 1, 2).reshape(-1, 2)[: len(tables.where)]
+
+
 def apply(tables: JawTables, values: Floats, points: Floats) -> None:
     """Turn ``points (P, 3)`` m in place, to the pose ``values``; a closed jaw leaves them as they are."""
     if values[tables.parameter] == 0.0:
         return
-    points[tables.where, ::2] += values[tables.parameter] * tables.drawn
+    points[tables.where, ::2] += values[tables.parameter] * drawn_of(tables)
     turn = tables.share[: len(tables.where)] * np.float32(tables.widest * values[tables.parameter])
     cosine, sine = np.cos(turn), np.sin(turn)
     up, forward = (points[tables.where, 1:] - tables.hinge).T

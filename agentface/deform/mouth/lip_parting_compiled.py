@@ -2,201 +2,133 @@
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
 from agentface.conventions import Floats, Indices
 from agentface.deform.lanes import LANES
 from agentface.deform.mouth.contact_tables import ContactTables
-from agentface.deform.mouth.lip_parting import CORNER, FARTHEST, SEALED_ABOVE, SEALINGS, SPREAD, STEEP
-from agentface.deform.simd import choose, larger, load, smaller, splat, store
+from agentface.deform.mouth.lip_facing_compiled import Facing, Mouth, look, overlap, take_heights
+from agentface.deform.mouth.lip_parting import FARTHEST, SEALED_ABOVE, SEALINGS, SPREAD, STEEP
+from agentface.deform.simd import larger, largest, load, splat, store
 from agentface.kernel import kernel
 
-_ZERO, _QUARTER, _HALF, _ONE = np.float32(0.0), np.float32(0.25), np.float32(0.5), np.float32(1.0)
-_TWO, _CLOSEST = np.float32(2.0), np.float32(1e-6)
-
-
-class Overlaps(NamedTuple):
-    """Of the columns of one lip, against one ring of the other: as in the twin's ``overlaps``, in whole vectors."""
-
-    second: Floats
-    overlap: Floats
-    portion: Floats
-    inside: Floats
+_ZERO, _QUARTER, _HALF, _ONE, _TWO = (np.float32(number) for number in (0.0, 0.25, 0.5, 1.0, 2.0))
 
 
 @kernel(error_model="numpy")
-def close(tables: ContactTables, press: np.float32, points: Floats) -> None:
+def close(tables: ContactTables, press: np.float32, mouth: Mouth) -> None:
     """Press draws lips together that are a little apart; as its twin."""
     share = min(_ONE, press / np.float32(tables.shut_from))
     if share <= _ZERO:
         return
-    move = np.zeros(tables.grid.shape[1], np.float32)
-    for lip in range(2):
-        own, other = (tables.upper, tables.lower) if lip == 0 else (tables.lower, tables.upper)
-        sign = _ONE if lip == 0 else -_ONE
-        gap = gaps(tables, own, other, sign, points)
-        near = np.zeros(own.shape[0], np.float32)
-        for k in range(2, own.shape[0] - 2):
+    move = np.zeros(mouth.heights.shape[1], np.float32)
+    for facing in (mouth.upper, mouth.lower):
+        gap = _gaps(tables.first, mouth.heights, facing)
+        near, last = np.zeros(facing.columns, np.float32), facing.columns - 1
+        for k in range(2, last - 1):
             near[k] = min(_ONE, max(_ZERO, _TWO - gap[k] / FARTHEST)) * gap[k]
-        for k in range(1, own.shape[0] - 1):
+        for k in range(1, last):
             even = _HALF * near[k] + _QUARTER * (near[k - 1] + near[k + 1])
-            move[own[k]] = -_HALF * sign * share * even
-    _move(tables, move, points)
+            move[facing.start + k] = -_HALF * facing.sign * share * even
+    _move(tables.fall, move, mouth.heights)
 
 
 @kernel(error_model="numpy")
 def gaps(tables: ContactTables, own: Indices, other: Indices, sign: np.float32, points: Floats) -> Floats:
-    """``(K,)`` m: between each of ``own`` columns and the other lip, where they are nearest; none is negative."""
-    places, heights = _rings(tables, own, points)
-    across, up = _rings(tables, other, points)
-    _put_in_order(across)
-    found = _new_overlaps(places.shape[1])
-    gap = np.full(places.shape[1], np.float32(np.inf), np.float32)
-    for ring in range(across.shape[0]):
-        for facing in range(across.shape[0]):
-            _overlap(across[facing], up[facing], other.shape[0], places[ring], heights[ring], sign, found)
-            for k in range(gap.shape[0]):
-                gap[k] = max(min(gap[k], -found.overlap[k]), _ZERO)
+    """``(K,)`` m: between each of ``own`` columns and the other lip, where they are nearest; as its twin."""
+    mouth = look(tables, points)
+    if sign > _ZERO:
+        return _gaps(tables.first, mouth.heights, mouth.upper)
+    return _gaps(tables.first, mouth.heights, mouth.lower)
+
+
+@kernel(error_model="numpy")
+def _gaps(first: int, heights: Floats, facing: Facing) -> Any:
+    """``(K,)`` m, how far each column is from the other lip where they are nearest; none is negative."""
+    rings, columns = facing.place.shape[0], facing.columns
+    take_heights(first, heights, facing)
+    for block in range(0, facing.own.shape[0], LANES):
+        most = overlap(first, heights, facing, 0, block)
+        for ring in range(1, rings):
+            most = larger(overlap(first, heights, facing, ring, block), most)
+        store(facing.best, block, most)
+    gap = np.empty(columns, np.float32)
+    for k in range(columns):
+        most = facing.best[k]
+        for ring in range(1, rings):
+            most = max(most, facing.best[ring * columns + k])
+        gap[k] = max(-most, _ZERO)
     return gap
 
 
 @kernel(error_model="numpy")
-def part(tables: ContactTables, points: Floats, apart: np.float32) -> bool:
+def part(tables: ContactTables, apart: np.float32, mouth: Mouth) -> bool:
     """Whether any lip had to give way: where none had, another round would find none."""
-    columns = tables.grid.shape[1]
-    up, down = np.zeros(columns, np.float32), np.zeros(columns, np.float32)
-    any_up = _push_apart(tables, tables.upper, tables.lower, tables.overlap_upper, apart, _ONE, points, up, down)
-    any_down = _push_apart(tables, tables.lower, tables.upper, tables.overlap_lower, apart, -_ONE, points, down, up)
+    up, down = np.zeros(mouth.heights.shape[1], np.float32), np.zeros(mouth.heights.shape[1], np.float32)
+    any_up = _push_apart(tables.first, mouth.heights, mouth.upper, apart, up, down)
+    any_down = _push_apart(tables.first, mouth.heights, mouth.lower, apart, down, up)
     if not (any_up or any_down):
         return False
     move = up - down
-    for end in (0, -1):
-        a, b = tables.upper[end], tables.lower[end]
+    upper, lower = mouth.upper, mouth.lower
+    for a, b in ((0, upper.columns), (upper.columns - 1, upper.columns + lower.columns - 1)):
         move[a] = _HALF * (move[a] + move[b])
         move[b] = move[a]
-    _move(tables, move, points)
+    _move(tables.fall, move, mouth.heights)
     return True
 
 
 @kernel(error_model="numpy")
-def seal(tables: ContactTables, level: np.float32, apart: np.float32, points: Floats) -> None:
+def seal(tables: ContactTables, level: np.float32, apart: np.float32, mouth: Mouth) -> None:
     """Draws the lips together, whatever has parted them; as its twin."""
     share = _ONE - max(_ZERO, _ONE - level) ** np.float32(0.5 / SEALINGS)
-    move = np.zeros(tables.grid.shape[1], np.float32)
+    move = np.zeros(mouth.heights.shape[1], np.float32)
     for _ in range(SEALINGS):
-        for lip in range(2):
-            own, other = (tables.upper, tables.lower) if lip == 0 else (tables.lower, tables.upper)
-            sign = _ONE if lip == 0 else -_ONE
-            of_way = SEALED_ABOVE if lip == 0 else _ONE - SEALED_ABOVE
-            gap = gaps(tables, own, other, sign, points)
-            gap[0], gap[own.shape[0] - 1] = _ZERO, _ZERO
-            for k in range(1, own.shape[0] - 1):
+        for facing, of_way in ((mouth.upper, SEALED_ABOVE), (mouth.lower, _ONE - SEALED_ABOVE)):
+            gap, last = _gaps(tables.first, mouth.heights, facing), facing.columns - 1
+            gap[0], gap[last] = _ZERO, _ZERO
+            for k in range(1, last):
                 even = _HALF * gap[k] + _QUARTER * (gap[k - 1] + gap[k + 1])
-                move[own[k]] = -sign * of_way * share * max(even, gap[k])
-        _move(tables, move, points)
-        part(tables, points, apart)
+                move[facing.start + k] = -facing.sign * of_way * share * max(even, gap[k])
+        _move(tables.fall, move, mouth.heights)
+        part(tables, apart, mouth)
 
 
 @kernel(error_model="numpy")
-def _move(tables: ContactTables, move: Floats, points: Floats) -> None:
-    for ring in range(tables.grid.shape[0]):
-        for column in range(tables.grid.shape[1]):
-            points[tables.grid[ring, column], 1] += tables.fall[ring] * move[column]
+def _move(fall: Floats, move: Floats, heights: Floats) -> None:
+    for ring in range(heights.shape[0]):
+        for block in range(0, heights.shape[1], LANES):
+            at = ring * heights.shape[1] + block
+            store(heights, at, load(heights, at) + load(move, block) * fall[ring])
 
 
 @kernel(error_model="numpy")
 def _push_apart(
-    tables: ContactTables,
-    own: Indices,
-    other: Indices,
-    at_rest: Floats,
-    apart: np.float32,
-    sign: np.float32,
-    points: Floats,
-    own_push: Floats,
-    other_push: Floats,
+    first: int, heights: Floats, facing: Facing, apart: np.float32, own_push: Floats, other_push: Floats
 ) -> bool:
-    touched = False
-    places, heights = _rings(tables, own, points)
-    across, up = _rings(tables, other, points)
-    _put_in_order(across)
-    found = _new_overlaps(places.shape[1])
-    for ring in range(across.shape[0]):
-        for facing in range(across.shape[0]):
-            _overlap(across[facing], up[facing], other.shape[0], places[ring], heights[ring], sign, found)
-            for k in range(1, own.shape[0] - 1):
-                push = _HALF * (found.overlap[k] - at_rest[k] + apart)
-                inside = found.inside[k]
-                if push <= _ZERO or inside <= _ZERO:
-                    continue
-                touched = True
-                near, portion, second = min(_ONE, inside / CORNER), found.portion[k], np.int32(found.second[k])
-                push *= near * near
-                a, b = other[second - 1], other[second]
-                own_push[own[k]] = max(own_push[own[k]], push)
-                other_push[a] = max(other_push[a], push * SPREAD * min(_ONE, STEEP * (_ONE - portion)))
-                other_push[b] = max(other_push[b], push * SPREAD * min(_ONE, STEEP * portion))
+    touched, rings = False, facing.place.shape[0]
+    take_heights(first, heights, facing)
+    for block in range(0, facing.own.shape[0], LANES):
+        most = splat(_ZERO)
+        for ring in range(rings):
+            over = overlap(first, heights, facing, ring, block) - load(facing.at_rest, block) + apart
+            vector = over * _HALF * load(facing.near, ring * facing.own.shape[0] + block)
+            store(facing.push, ring * facing.own.shape[0] + block, vector)
+            most = larger(vector, most)
+        store(facing.best, block, most)
+        if largest(most) > _ZERO:
+            touched = True
+            for vertex in range(block, block + LANES):
+                own = facing.start + facing.column[vertex]
+                own_push[own] = max(own_push[own], facing.best[vertex])
+            for ring in range(rings):
+                for vertex in range(block, block + LANES):
+                    push = facing.push[ring, vertex]
+                    if push > _ZERO:
+                        other, portion = facing.others_start + facing.place[ring, vertex], facing.portion[ring, vertex]
+                        there, next_there = min(_ONE, STEEP * (_ONE - portion)), min(_ONE, STEEP * portion)
+                        other_push[other] = max(other_push[other], push * SPREAD * there)
+                        other_push[other + 1] = max(other_push[other + 1], push * SPREAD * next_there)
     return touched
-
-
-@kernel(error_model="numpy")
-def _rings(tables: ContactTables, columns: Indices, points: Floats) -> Any:
-    """``(rings, K)`` m twice: x and y of the rings that may touch, in these columns and again the last, in blocks."""
-    count = (columns.shape[0] + LANES - 1) // LANES * LANES
-    across = np.empty((tables.last + 1 - tables.first, count), np.float32)
-    up = np.empty_like(across)
-    for ring in range(across.shape[0]):
-        for j in range(count):
-            vertex = tables.grid[tables.first + ring, columns[min(j, columns.shape[0] - 1)]]
-            across[ring, j], up[ring, j] = points[vertex, 0], points[vertex, 1]
-    return across, up
-
-
-@kernel(error_model="numpy")
-def _put_in_order(across: Floats) -> None:
-    """From left to right, also where a ring folds back; as the twin's ``_in_order``."""
-    back = np.empty(across.shape[1], np.float32)
-    for ring in range(across.shape[0]):
-        row = across[ring]
-        back[-1] = row[-1]
-        for j in range(row.shape[0] - 2, -1, -1):
-            back[j] = max(row[j], back[j + 1])
-        forth = row[0]
-        for j in range(row.shape[0]):
-            forth = min(forth, row[j])
-            row[j] = _HALF * (forth + back[j])
-
-
-@kernel(error_model="numpy")
-def _new_overlaps(count: int) -> Overlaps:
-    return Overlaps(
-        np.empty(count, np.float32),
-        np.empty(count, np.float32),
-        np.empty(count, np.float32),
-        np.empty(count, np.float32),
-    )
-
-
-@kernel(error_model="numpy")
-def _overlap(
-    across: Floats, up: Floats, count: int, places: Floats, heights: Floats, sign: np.float32, found: Overlaps
-) -> None:
-    """How far ``places`` with their ``heights`` lie beyond one ring of the other lip, of ``count`` columns."""
-    one, zero = splat(_ONE), splat(_ZERO)
-    for block in range(0, places.shape[0], LANES):
-        x = load(places, block)
-        second, here, there, low, high = one, splat(across[0]), splat(across[1]), splat(up[0]), splat(up[1])
-        for j in range(1, count - 1):
-            before = splat(across[j]) - x
-            second = choose(before, splat(np.float32(j + 1)), second)
-            here, there = choose(before, splat(across[j]), here), choose(before, splat(across[j + 1]), there)
-            low, high = choose(before, splat(up[j]), low), choose(before, splat(up[j + 1]), high)
-        portion = smaller(one, larger(zero, (here - x) / larger(here - there, splat(_CLOSEST))))
-        beyond = larger(x - splat(across[0]), splat(across[count - 1]) - x)
-        overlap = (low + portion * (high - low) - load(heights, block)) * sign - larger(beyond, zero)
-        store(found.second, block, second)
-        store(found.portion, block, portion)
-        store(found.inside, block, zero - beyond)
-        store(found.overlap, block, overlap)

@@ -10,6 +10,7 @@ from agentface.conventions import Floats, Indices
 from agentface.deform.mouth import lips
 from agentface.deform.mouth.lip_surface import COLUMNS, ROWS
 from agentface.deform.mouth.lips import RED, THINNED, LipTables
+from agentface.deform.simd_rows import put_row, row_at, row_of, wide_row_at
 from agentface.kernel import kernel
 
 _CONTROLS = COLUMNS * ROWS
@@ -20,18 +21,15 @@ _rolled = kernel(error_model="numpy")(lips.rolled)
 
 
 @kernel(error_model="numpy", inline="always")
-def _mean(controls: Indices, weights: Floats, row: int, count: int, moved: Floats) -> tuple[Any, Any, Any]:
-    """The movements ``moved (C, 3)`` of a row of ``controls (N, K)``, by ``weights (N, K)``.
+def _mean(controls: Indices, weights: Floats, row: int, count: int, moved: Floats) -> Any:
+    """The movements ``moved (C, 4)`` of a row of ``controls (N, K)``, by ``weights (N, K)``.
 
     ``count`` is K, which the compiler has to know to unroll the loop.
     """
-    x, y, z = _ZERO, _ZERO, _ZERO
+    mean = row_of(_ZERO)
     for j in range(count):
-        i, weight = controls[row, j], weights[row, j]
-        x += weight * moved[i, 0]
-        y += weight * moved[i, 1]
-        z += weight * moved[i, 2]
-    return x, y, z
+        mean = mean + wide_row_at(moved, 4 * controls[row, j]) * weights[row, j]
+    return mean
 
 
 @kernel(error_model="numpy")
@@ -65,7 +63,7 @@ def contract(tables: LipTables, values: Floats, found: Floats, points: Floats) -
     if pucker == _ZERO and press == _ZERO and thinner == _ZERO:
         return
     roll = _rolled(press, tables.roll_from)
-    moved = np.empty((_CONTROLS, 3), np.float32)
+    moved = np.empty((_CONTROLS, 4), np.float32)
     for i in range(_CONTROLS):
         row = i % ROWS
         red, other, share = start + i - row + RED[0], start + i - row + RED[1], thinner * _THINNED[row]
@@ -79,20 +77,14 @@ def contract(tables: LipTables, values: Floats, found: Floats, points: Floats) -
         ahead = pucker * tables.shift[0, i, 2] + press * tables.shift[1, i, 2] + roll * tables.shift[2, i, 2]
         up -= share * (y - _HALF * (points[red, 1] + points[other, 1]))
         ahead -= share * (points[start + i, 2] - _HALF * (points[red, 2] + points[other, 2]))
-        moved[i, 0], moved[i, 1], moved[i, 2] = across, up, ahead
+        moved[i, 0], moved[i, 1], moved[i, 2], moved[i, 3] = across, up, ahead, _ZERO
     for k in range(tables.rim.shape[0]):
         row = tables.rim[k]
-        x, y, z = _mean(tables.controls, tables.weight, row, 16, moved)
-        vertex = tables.patch[row]
-        points[vertex, 0] += x
-        points[vertex, 1] += y
-        points[vertex, 2] += z
+        at = 3 * tables.patch[row]
+        put_row(points, at, row_at(points, at) + _mean(tables.controls, tables.weight, row, 16, moved))
     for k in range(tables.skirt.shape[0]):
-        x, y, z = _mean(tables.skirt_index, tables.skirt_weight, k, 4, moved)
-        vertex = tables.skirt[k]
-        points[vertex, 0] += x
-        points[vertex, 1] += y
-        points[vertex, 2] += z
+        at = 3 * tables.skirt[k]
+        put_row(points, at, row_at(points, at) + _mean(tables.skirt_index, tables.skirt_weight, k, 4, moved))
     for i in range(_CONTROLS):
         points[start + i, 0] += moved[i, 0]
         points[start + i, 1] += moved[i, 1]
@@ -103,14 +95,14 @@ def contract(tables: LipTables, values: Floats, found: Floats, points: Floats) -
 def surface(tables: LipTables, points: Floats) -> None:
     """The vertices of the patch take the surface's movement; as its twin."""
     start = tables.skin_count
-    moved = np.empty((_CONTROLS, 3), np.float32)
+    moved = np.empty((_CONTROLS, 4), np.float32)
     for i in range(_CONTROLS):
         moved[i, 0] = points[start + i, 0] - tables.control_rest[i, 0]
         moved[i, 1] = points[start + i, 1] - tables.control_rest[i, 1]
         moved[i, 2] = points[start + i, 2] - tables.control_rest[i, 2]
+        moved[i, 3] = _ZERO
     for row in range(tables.patch.shape[0]):
-        x, y, z = _mean(tables.controls, tables.weight, row, 16, moved)
-        vertex, blend = tables.patch[row], tables.blend[row]
-        points[vertex, 0] += blend * (tables.rest[row, 0] + x - points[vertex, 0])
-        points[vertex, 1] += blend * (tables.rest[row, 1] + y - points[vertex, 1])
-        points[vertex, 2] += blend * (tables.rest[row, 2] + z - points[vertex, 2])
+        at = 3 * tables.patch[row]
+        there = row_at(tables.rest, 3 * row) + _mean(tables.controls, tables.weight, row, 16, moved)
+        here = row_at(points, at)
+        put_row(points, at, here + (there - here) * tables.blend[row])

@@ -9,6 +9,7 @@ import numpy as np
 from agentface.conventions import Floats
 from agentface.deform.muscles import squash_compiled as squash
 from agentface.deform.muscles.limits import LimitTables
+from agentface.deform.simd_rows import dot, put_row, row_at
 from agentface.kernel import kernel
 
 _ONE = np.float32(1.0)
@@ -21,16 +22,13 @@ def apply(tables: LimitTables, points: Floats) -> None:
     rest, limits = tables.rest, tables.limit
     knee, above = np.float32(tables.knee), np.float32(1.0 - tables.knee)
     for point in range(rest.shape[0]):
-        x = points[point, 0] - rest[point, 0]
-        y = points[point, 1] - rest[point, 1]
-        z = points[point, 2] - rest[point, 2]
-        square = x * x + y * y + z * z
+        home = row_at(rest, 3 * point)
+        way = row_at(points, 3 * point) - home
+        square = dot(way, way)
         inside = knee * limits[point]
         if square > inside * inside:
             far = np.float32(math.sqrt(square))
             limit = limits[point]
             s = (far / limit - knee) / above
             scale = limit * (knee + above * s / (_ONE + s)) / far
-            points[point, 0] = rest[point, 0] + scale * x
-            points[point, 1] = rest[point, 1] + scale * y
-            points[point, 2] = rest[point, 2] + scale * z
+            put_row(points, 3 * point, home + way * scale)

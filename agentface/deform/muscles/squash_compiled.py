@@ -8,9 +8,10 @@ import numpy as np
 
 from agentface.conventions import Floats
 from agentface.deform.muscles.squash import SquashTables
+from agentface.deform.simd_rows import dot, put_row, row_at
 from agentface.kernel import kernel
 
-_ZERO, _ONE = np.float32(0.0), np.float32(1.0)
+_ONE = np.float32(1.0)
 
 
 @kernel(error_model="numpy")
@@ -38,18 +39,15 @@ def _pass_over(tables: SquashTables, points: Floats) -> bool:
 
 @kernel(error_model="numpy", inline="always")
 def _left(tables: SquashTables, pair: int, side: int, points: Floats) -> Any:
-    p, a, b = tables.vertices[pair, side, 0], tables.vertices[pair, side, 1], tables.vertices[pair, side, 2]
-    foot, left = tables.foot[pair, side], _ZERO
-    for axis in range(3):
-        height = points[p, axis] - points[a, axis] - foot * (points[b, axis] - points[a, axis])
-        left += height * tables.measure[pair, side, axis]
-    return left
+    height = 2 * pair + side
+    a = row_at(points, 3 * tables.vertices[pair, side, 1])
+    along = (row_at(points, 3 * tables.vertices[pair, side, 2]) - a) * tables.foot[pair, side]
+    return dot(row_at(points, 3 * tables.vertices[pair, side, 0]) - a - along, row_at(tables.measure, 3 * height))
 
 
 @kernel(error_model="numpy", inline="always")
 def _raise(tables: SquashTables, pair: int, side: int, s: Any, reach: Any, points: Floats) -> None:
-    push = reach * s * s / (_ONE + s)
+    push = row_at(tables.height, 3 * (2 * pair + side)) * (reach * s * s / (_ONE + s))
     for i in range(3):
-        point, part = tables.vertices[pair, side, i], tables.gives[pair, side, i]
-        for axis in range(3):
-            points[point, axis] += part * (push * tables.height[pair, side, axis])
+        at = 3 * tables.vertices[pair, side, i]
+        put_row(points, at, row_at(points, at) + push * tables.gives[pair, side, i])

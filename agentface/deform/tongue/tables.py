@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
+import numpy.typing as npt
 
 from agentface.conventions import Doubles, Floats, Indices
+from agentface.deform.lanes import LANES
 from agentface.deform.tongue import passage
 from agentface.deform.tongue.passage import Passage
 from agentface.head.model import HeadModel
@@ -24,6 +26,19 @@ _FORWARD = 0.027  # m, of a tongue without that shape
 _ROUND_FROM, _ROUND = 0.65, 0.68  # where along the tongue its tip begins to be round, and how round it is
 
 
+class TongueBlocks(NamedTuple):
+    """The vertices in B blocks of LANES; a last block that is not full repeats its last vertex.
+
+    Attributes:
+        arm: ``(B, 6, LANES)`` m, x, y and z of ``TongueTables.arm``, then those of ``arm_out``.
+        station: ``(B, LANES)``; ``part``: ``(B, LANES)``.
+    """
+
+    arm: Doubles
+    station: Indices
+    part: Doubles
+
+
 class TongueTables(NamedTuple):
     """What the tongue needs a frame; T vertices, K stations from its root to its tip.
 
@@ -39,6 +54,7 @@ class TongueTables(NamedTuple):
             m, how that changes when it is out.
         hump: ``(K,)`` 0..1, how far each station rises; ``rolls``: ``(K,)`` 0..1, how far it rolls.
         passage: teeth and lips.
+        blocks: what of these is the vertices', for compiled code.
     """
 
     parameters: Indices
@@ -56,10 +72,10 @@ class TongueTables(NamedTuple):
     hump: Doubles
     rolls: Doubles
     passage: Passage
+    blocks: TongueBlocks
 
 
-PER_VERTEX = "rest", "arm", "arm_out", "station", "part"
-"""Those of :class:`TongueTables` that have a row for each vertex."""
+_PER_VERTEX = "rest", "arm", "arm_out", "station", "part"
 
 
 def prepare(model: HeadModel) -> TongueTables:
@@ -102,6 +118,23 @@ def prepare(model: HeadModel) -> TongueTables:
         hump=smoothstep(0.0, 0.55, share) * (1.0 - smoothstep(0.6, 1.0, share)),
         rolls=smoothstep(0.3, 0.7, share),
         passage=passage.prepare(model),
+        blocks=_blocks(arm, arm_out, station, part),
+    )
+
+
+def only(tables: TongueTables, vertices: npt.NDArray[np.integer[Any]]) -> TongueTables:
+    """The tables of some of the vertices."""
+    few: dict[str, Any] = {name: np.ascontiguousarray(getattr(tables, name)[vertices]) for name in _PER_VERTEX}
+    return tables._replace(**few, blocks=_blocks(few["arm"], few["arm_out"], few["station"], few["part"]))
+
+
+def _blocks(arm: Doubles, arm_out: Doubles, station: Indices, part: Doubles) -> TongueBlocks:
+    full = np.minimum(np.arange(-(-len(arm) // LANES) * LANES), len(arm) - 1).reshape(-1, LANES)
+    arms = np.moveaxis(np.concatenate([arm, arm_out], axis=1)[full], 2, 1)
+    return TongueBlocks(
+        np.ascontiguousarray(arms, np.float64),
+        np.ascontiguousarray(station[full], np.int32),
+        np.ascontiguousarray(part[full], np.float64),
     )
 
 

@@ -1,22 +1,36 @@
-"""The tongue's loop; the numpy twin is :mod:`.tongue`; both share the code of :mod:`.sections` and :mod:`.holding`."""
+"""The tongue's loop; the numpy twin is :mod:`.tongue`; both share the code of :mod:`.sections` and :mod:`.holding`.
+
+The stations move one by one, the vertices LANES at once; double precision, as a place at the end of the teeth's wall is
+told by the root of what is left of its depth.
+"""
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 from typing import Any
 
-from agentface.conventions import Doubles, Floats
+import numpy as np
+
+from agentface.conventions import Doubles, Floats, Indices
+from agentface.deform import simd_numpy  # noqa: F401  # np.sin(vector)
+from agentface.deform.lanes import LANES
+from agentface.deform.simd import gather, load, store, store_whole, whole
 from agentface.deform.tongue import holding, passage_compiled, sections
+from agentface.deform.tongue.passage import COLUMNS
+from agentface.deform.tongue.passage_compiled import FAST
 from agentface.deform.tongue.sections import OUT, Sections
-from agentface.deform.tongue.tables import TongueTables
+from agentface.deform.tongue.tables import STATIONS, TongueBlocks, TongueTables
 from agentface.kernel import compiled_twin, kernel
+
+_X, _Y, _Z, _PITCH, _YAW, _FLAT, _CURL = range(7)  # rows of what the vertices need of the stations
+_LIPS = 6  # rows of :attr:`.sections.Sections.lips`
+_NARROWEST = 1e-6 * (COLUMNS - 1)  # m, of a mouth whose columns are told apart
 
 _names: dict[str, Any] = {**vars(sections), **vars(holding), "__name__": __name__, "passage": passage_compiled}
 
 
 def _twin(function: Callable[..., Any]) -> Any:
-    made = _names[function.__name__] = compiled_twin(function, _names, error_model="numpy")
+    made = _names[function.__name__] = compiled_twin(function, _names, error_model="numpy", fastmath=FAST)
     return made
 
 
@@ -39,40 +53,97 @@ def apply(tables: TongueTables, values: Floats, vertices: Floats, jaw: Floats, o
     limit(tables, values, vertices, jaw, now)
     bend(tables, values, now)
     settle(tables, jaw, now)
-    walls, limits = tables.passage.walls, now.limits
-    for vertex in range(tables.rest.shape[0]):
-        x, y, z = _placed(tables, now, vertex)
-        lips = lips_at(now, posed(jaw, x, y, z)[0])
-        x, z = held_aside(walls, limits, jaw, lips, x, y, z)
-        y = lifted(walls, limits, x, y, z)
-        at_x, at_y, at_z = posed(jaw, x, y, z)
-        up = lowered(walls, limits, lips_at(now, at_x), at_x, at_y, at_z)
-        out[vertex, 0], out[vertex, 1], out[vertex, 2] = x + up * jaw[1, 0], y + up * jaw[1, 1], z + up * jaw[1, 2]
+    stations = _stations(now)
+    lanes, column = np.empty((3, LANES)), np.empty(LANES, np.int32)
+    for block in range(tables.blocks.part.shape[0]):
+        _write(tables.blocks, tables.passage.walls, now, stations, jaw, block, column, lanes)
+        for lane in range(min(LANES, out.shape[0] - block * LANES)):
+            for axis in range(3):
+                out[block * LANES + lane, axis] = lanes[axis, lane]
 
 
 @kernel(error_model="numpy")
-def _placed(tables: TongueTables, now: Sections, vertex: int) -> tuple[float, float, float]:
-    """A vertex about the stations, m."""
-    k, part, out = tables.station[vertex], tables.part[vertex], now.limits[OUT]
-    pitch, yaw = _between(now.pitch, k, part), _between(now.yaw, k, part)
-    flat, curl = _between(now.flat, k, part), _between(now.curl, k, part)
-    x = tables.arm[vertex, 0] + out * tables.arm_out[vertex, 0]
-    h = flat * (tables.arm[vertex, 1] + out * tables.arm_out[vertex, 1])
-    length = tables.arm[vertex, 2] + out * tables.arm_out[vertex, 2]
-    turn = curl * x + 1e-12
-    sine, half = math.sin(turn), math.sin(0.5 * turn)
-    x, h = x * sine / turn - h * sine, h * math.cos(turn) + x * half * half / (0.5 * turn)
-    h, length = h * math.cos(pitch) + length * math.sin(pitch), length * math.cos(pitch) - h * math.sin(pitch)
-    x, length = x * math.cos(yaw) + length * math.sin(yaw), length * math.cos(yaw) - x * math.sin(yaw)
+def _stations(now: Sections) -> Doubles:
+    """``(7, STATIONS)``: what the vertices need of the stations."""
+    found = np.empty((_CURL + 1, STATIONS))
+    for k in range(STATIONS):
+        found[_X, k], found[_Y, k], found[_Z, k] = now.place[k, 0], now.place[k, 1], now.place[k, 2]
+        found[_PITCH, k], found[_YAW, k] = now.pitch[k], now.yaw[k]
+        found[_FLAT, k], found[_CURL, k] = now.flat[k], now.curl[k]
+    return found
+
+
+@kernel(error_model="numpy", fastmath=FAST)
+def _write(
+    blocks: TongueBlocks,
+    walls: Doubles,
+    now: Sections,
+    stations: Doubles,
+    jaw: Floats,
+    block: int,
+    column: Indices,
+    lanes: Doubles,
+) -> None:
+    """Write one block of vertices, placed about the stations and held where they are free, into ``lanes``, m."""
+    x, y, z = _placed(blocks, stations, now.limits[OUT], block)
+    lip = _lips_at(now.across, now.lips, posed(jaw, x, y, z)[0], column)
+    x, z = held_aside(walls, now.limits, jaw, lip, x, y, z)
+    y = lifted(walls, now.limits, x, y, z)
+    at_x, at_y, at_z = posed(jaw, x, y, z)
+    up = lowered(walls, now.limits, _lips_at(now.across, now.lips, at_x, column), at_x, at_y, at_z)
+    store(lanes, 0, x + up * jaw[1, 0])
+    store(lanes, LANES, y + up * jaw[1, 1])
+    store(lanes, 2 * LANES, z + up * jaw[1, 2])
+
+
+@kernel(error_model="numpy", fastmath=FAST)
+def _placed(blocks: TongueBlocks, stations: Doubles, out: float, block: int) -> Any:
+    """A block of vertices about the stations, m."""
+    at, arm, arm_out = block * LANES, 6 * block * LANES, (6 * block + 3) * LANES
+    here, part = np.empty((_CURL + 1, LANES)), load(blocks.part, at)
+    for row in range(_CURL + 1):
+        _between(stations, blocks.station, at, row * STATIONS, part, here, row * LANES)
+    x = load(blocks.arm, arm) + load(blocks.arm, arm_out) * out
+    h = load(blocks.arm, arm + LANES) + load(blocks.arm, arm_out + LANES) * out
+    length = load(blocks.arm, arm + 2 * LANES) + load(blocks.arm, arm_out + 2 * LANES) * out
+    h, turn = h * load(here, _FLAT * LANES), load(here, _CURL * LANES) * x + 1e-12
+    sine, half = np.sin(turn), np.sin(turn * 0.5)
+    x, h = x * sine / turn - h * sine, h * np.cos(turn) + x * half * half / (turn * 0.5)
+    pitch, yaw = load(here, _PITCH * LANES), load(here, _YAW * LANES)
+    cosine, sine = np.cos(pitch), np.sin(pitch)
+    h, length = h * cosine + length * sine, length * cosine - h * sine
+    cosine, sine = np.cos(yaw), np.sin(yaw)
     return (
-        _between(now.place[:, 0], k, part) + x,
-        _between(now.place[:, 1], k, part) + h,
-        _between(now.place[:, 2], k, part) + length,
+        load(here, _X * LANES) + x * cosine + length * sine,
+        load(here, _Y * LANES) + h,
+        load(here, _Z * LANES) + length * cosine - x * sine,
     )
 
 
-@kernel(error_model="numpy")
-def _between(rows: Doubles, station: int, part: float) -> float:
-    """``rows (K,)`` at a place along the tongue."""
-    here: float = rows[station]
-    return here + part * (rows[station + 1] - here)
+@kernel(error_model="numpy", fastmath=FAST)
+def _between(rows: Doubles, index: Indices, at: int, first: int, part: Any, out: Doubles, place: int) -> None:
+    """Write what of the row of ``rows`` from ``first`` on lies ``part`` of the way from ``index`` to the next one."""
+    here = gather(rows, index, at, first)
+    store(out, place, here + part * (gather(rows, index, at, first + 1) - here))
+
+
+@kernel(error_model="numpy", fastmath=FAST)
+def _lips_at(across: Doubles, lips: Doubles, x: Any, column: Indices) -> Any:
+    """The lips at each of a block of ``x`` m, whose columns are evenly ``across`` the mouth."""
+    first, last = across[0], across[COLUMNS - 1]
+    place = (first - x) * ((COLUMNS - 1) / max(first - last, _NARROWEST))
+    place = np.minimum(np.maximum(place, 0.0), COLUMNS - 1.0)
+    before = whole(np.minimum(place, COLUMNS - 2.0))
+    part = place - before
+    store_whole(column, 0, before)
+    there = np.empty((_LIPS, LANES))
+    for row in range(_LIPS):
+        _between(lips, column, 0, row * COLUMNS, part, there, row * LANES)
+    return (
+        load(there, 0),
+        load(there, LANES),
+        load(there, 2 * LANES),
+        load(there, 3 * LANES),
+        load(there, 4 * LANES),
+        load(there, 5 * LANES),
+    )

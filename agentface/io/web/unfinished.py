@@ -26,7 +26,7 @@ class Unfinished:
 
     def __init__(self, model: HeadModel) -> None:
         tables = deform_tables.of(model).finish
-        self._neck, self._wrinkles, self._triangles = tables.neck, tables.wrinkles, tables.triangles
+        self._neck, self._wrinkles, self._triangles = tables.neck, tables.wrinkles, tables.smooth_normals.triangles
         self._raised = tables.wrinkles.raised
         self._stays = tables.neck.stays.astype(np.float64)
         self._raised_neck = np.flatnonzero(np.isin(tables.neck.where, tables.wrinkles.raised))
