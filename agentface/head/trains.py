@@ -16,7 +16,7 @@ from agentface.conventions import Doubles, Floats
 
 _WAVE = 5.0  # wrinkles' widths, along them, in which they wander once
 _CREASE = 0.16  # of a wrinkle's width, how far from its foot a crease is dark
-_WIDEST_CREASE = 1.5e-3  # m
+_WIDEST_CREASE = 2.2e-3  # m
 
 
 def parabolas(distance: Doubles, length: float, count: int, height: float) -> Doubles:
