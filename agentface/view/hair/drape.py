@@ -24,9 +24,9 @@ _SMOOTHINGS, _PULLS = 8, 10
 """Hair hangs taut over what stands out: smoothed, and pushed out of the head again, so many times."""
 _WHORL = 0.006
 """Metres round the whorl where hair starts."""
-_BESIDE = 0.0011
+_BESIDE = 0.0008
 """Metres from the parting where hair starts."""
-_ZIGZAG = ((0.0011, 240.0, 0.0), (0.0006, 610.0, 1.3))
+_ZIGZAG = ((0.0013, 240.0, 0.0), (0.0007, 610.0, 1.3))
 """Waves of the parting, which is no line: metres to both sides, radians a metre, where each starts."""
 _FRAMING_DEG, _FRAMING_REACH_DEG = 14.0, 24.0
 """How far the hair at the face comes forward over the cheeks, and to which turn behind it does."""
