@@ -19,10 +19,15 @@ float scattered(float number) {
     return fract(0.618034 * number + 0.37 * floor(strand.w) + 0.11 * fract(0.1415 * number * number));
 }
 
-// From one strand of hairs to the next, 0..1; where a pixel holds many of them, their mean.
-float varied(float hairs, float pixel) {
+// How much is seen of what differs from one to the next where a pixel holds so many.
+float seen(float pixel) {
+    return clamp(1.6 - 1.4 * pixel, 0.0, 1.0);
+}
+
+// From one strand of hairs to the next, 0..1; their mean where they are not seen.
+float varied(float hairs, float visible) {
     float low = floor(hairs);
-    return mix(0.5, mix(scattered(low), scattered(low + 1.0), smoothstep(0.0, 1.0, hairs - low)), clamp(1.6 - 1.4 * pixel, 0.0, 1.0));
+    return mix(0.5, mix(scattered(low), scattered(low + 1.0), smoothstep(0.0, 1.0, hairs - low)), visible);
 }
 
 void main() {
@@ -30,12 +35,13 @@ void main() {
     float card = step(CARDS, strand.x), many = mix(HAIRS, CARD_HAIRS, card);
     float hairs = many * strand.x + 1.5 * drift.r, wisp = hairs / WISP;
     vec2 pixel = fwidth(vec2(hairs, along)) + 1e-4;
-    float here = varied(hairs, pixel.x), ends = varied(wisp + 7.0, pixel.x / WISP), unseen = min(0.6 * pixel.x, 1.0);
+    float hair_seen = seen(pixel.x), wisp_seen = seen(pixel.x / WISP), unseen = 1.0 - hair_seen;
+    float here = varied(hairs, hair_seen), ends = varied(wisp + 7.0, wisp_seen), point = mix(0.5, abs(2.0 * fract(wisp) - 1.0), wisp_seen);
     float narrow = mix(1.4, 0.82, card * smoothstep(0.0, 0.2, along)) - (0.10 + 0.35 * own) * smoothstep(APART, 1.0, along);
     float edge = EDGE * (strand.x - CARDS * card) * (1.2 - along) + 0.8 * along + 1.2 * drift.g;   // fewer hairs frame the face
     float last = 1.0 - TIP * ((0.3 + own) * ends * ends + 0.3 * own + 0.2 * here);
-    vec4 within = vec4(edge + 0.25 - here, (last - along) / (0.6 * TIP) - abs(2.0 * fract(wisp) - 1.0), narrow + 0.32 * here - abs(lock), along - ROOT * (1.6 * ends - 0.4));
-    vec4 soft = vec4(EDGE / many * pixel.x + 0.8 * unseen, pixel.y / (0.6 * TIP) + 2.0 / WISP * pixel.x, 2.0 / many * pixel.x + 0.3 * unseen, pixel.y + 0.3 * ROOT);
+    vec4 within = vec4(edge + 0.25 - here, (last - along) / (0.6 * TIP) - point, narrow + 0.32 * here - abs(lock), along - ROOT * (1.6 * ends - 0.4));
+    vec4 soft = vec4(EDGE / many * pixel.x + 0.8 * unseen, pixel.y / (0.6 * TIP) + min(2.0 / WISP * pixel.x, 1.0), 2.0 / many * pixel.x + 0.3 * unseen, pixel.y + 0.3 * ROOT);
     vec4 covered = clamp(0.5 + within / soft, 0.0, 1.0);
     float cover = min(min(covered.x, covered.y), min(covered.z, covered.w));
     if (cover < least_cover) discard;
