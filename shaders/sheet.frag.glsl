@@ -2,6 +2,7 @@
 centroid in vec3 dull, bright;
 centroid in vec4 strand;   // across in locks, along 0..1, light, a number of its own
 centroid in vec3 drift;    // how hairs wander, gaps deepen and light changes
+in vec2 spread;            // the first two of strand, whose differences from pixel to pixel hold at edges, too
 out vec4 colour;           // its opacity becomes coverage of the samples
 
 uniform float least_cover; // of a pixel, that is drawn
@@ -21,7 +22,7 @@ float scattered(float number) {
 
 // How much is seen of what differs from one to the next where a pixel holds so many.
 float seen(float pixel) {
-    return clamp(1.6 - 1.4 * pixel, 0.0, 1.0);
+    return clamp(1.5 - 2.0 * pixel, 0.0, 1.0);
 }
 
 // From one strand of hairs to the next, 0..1; their mean where they are not seen.
@@ -34,14 +35,14 @@ void main() {
     float along = strand.y, number = floor(strand.x), lock = 2.0 * (strand.x - number) - 1.0, own = scattered(3.0 * number + 1.0);
     float card = step(CARDS, strand.x), many = mix(HAIRS, CARD_HAIRS, card);
     float hairs = many * strand.x + 1.5 * drift.r, wisp = hairs / WISP;
-    vec2 pixel = fwidth(vec2(hairs, along)) + 1e-4;
+    vec2 pixel = vec2(many, 1.0) * fwidth(spread) + 1e-4;
     float hair_seen = seen(pixel.x), wisp_seen = seen(pixel.x / WISP), unseen = 1.0 - hair_seen;
     float here = varied(hairs, hair_seen), ends = varied(wisp + 7.0, wisp_seen), point = mix(0.5, abs(2.0 * fract(wisp) - 1.0), wisp_seen);
     float narrow = mix(1.4, 0.82, card * smoothstep(0.0, 0.2, along)) - (0.10 + 0.35 * own) * smoothstep(APART, 1.0, along);
     float edge = EDGE * (strand.x - CARDS * card) * (1.2 - along) + 0.8 * along + 1.2 * drift.g;   // fewer hairs frame the face
     float last = 1.0 - TIP * ((0.3 + own) * ends * ends + 0.3 * own + 0.2 * here);
-    vec4 within = vec4(edge + 0.25 - here, (last - along) / (0.6 * TIP) - point, narrow + 0.32 * here - abs(lock), along - ROOT * (1.6 * ends - 0.4));
-    vec4 soft = vec4(EDGE / many * pixel.x + 0.8 * unseen, pixel.y / (0.6 * TIP) + min(2.0 / WISP * pixel.x, 1.0), 2.0 / many * pixel.x + 0.3 * unseen, pixel.y + 0.3 * ROOT);
+    vec4 within = vec4(edge - 0.1 - here, (last - along) / (0.6 * TIP) - point, narrow + 0.32 * here - abs(lock), along - ROOT * (1.6 * ends - 0.4));
+    vec4 soft = vec4(min(EDGE / many * pixel.x, 0.3) + 0.5 * unseen, pixel.y / (0.6 * TIP) + min(2.0 / WISP * pixel.x, 1.0), 2.0 / many * pixel.x + 0.3 * unseen, pixel.y + 0.3 * ROOT);
     vec4 covered = clamp(0.5 + within / soft, 0.0, 1.0);
     float cover = min(min(covered.x, covered.y), min(covered.z, covered.w));
     if (cover < least_cover) discard;

@@ -37,7 +37,7 @@ _LOW = 0.45
 """How high the lowest lie, as a part of the hair's thickness."""
 _GOLDEN = 0.618
 """Turns from the height of a card to the next one's, so that neighbours lie apart."""
-_APART = 0.0015
+_APART = 0.0025
 """Metres by which the highest lie over the lowest from the root on, so that none cut through others."""
 _WISPS, _WISP_WIDTH, _WISP_DRIFT = 4, 0.4, 1.8
 """Every how many cards at the face one is a wisp; how wide, and how far off its way, beside the others."""

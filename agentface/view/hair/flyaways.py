@@ -20,8 +20,8 @@ _LOOSE, _LOOSE_AWAY = 0.08, 1.8
 """The part of them that leaves it farther, and how much farther."""
 _AT_FACE, _TO_THE_FRONT = 0.6, 5.0
 """The part of them that gathers at the face, and the exponent with which it does."""
-_BABIES, _BABY_LENGTH, _BABY_WIDTH = 0.4, (0.005, 0.013), 0.7
-"""Short hairs for each flyaway; metres; their width beside that of flyaways."""
+_BABIES, _BABY_LENGTH, _BABY_WIDTH, _BABY_DEPTH = 1.2, (0.005, 0.013), 0.7, 0.005
+"""Short hairs for each flyaway; metres; their width beside that of flyaways; the most metres behind the hairline."""
 _SMOOTHINGS = 4
 """Of the card's course, which has fewer points."""
 _ACROSS = 1.8
@@ -57,6 +57,7 @@ def baby_hairs(model: HeadModel, amount: Amount, look: HairLook, beside: float, 
     """Short hairs of the hairline, combed away from a parting ``beside`` metres from the middle of the head."""
     line = Hairline(model, look.hairline)
     roots = HairRoots.drawn(model, model.normals, line, round(_BABIES * amount.hairs), rng, elsewhere=0.0)
+    roots = roots.before(_BABY_DEPTH)
     count, t = len(roots), np.linspace(0.0, 1.0, amount.points)[:, None]
     n = roots.normals
     side = np.sign(roots.places[:, :1] - beside)
