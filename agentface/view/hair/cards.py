@@ -131,7 +131,7 @@ def _lying(
     points = middle + sway[..., None] * across + height[..., None] * out
     rootward = _OVER_PARTING * rng.random((_CARDS, 1)) * np.exp(-along / _OVER_PARTING_REACH)
     points = points - rootward[..., None] * unit_rows(np.gradient(middle, axis=1))
-    return smoothed(hull.push_out(points, apart + 0.002 + _LOWEST * smoothstep(0.0, 0.03, along)), 1)
+    return smoothed(hull.push_out(points, apart + 0.002 + _LOWEST * smoothstep(0.0, 0.03, along)), 2)
 
 
 def _woven(hull: Hull, course: _Course, points: Doubles, layer: Doubles, rng: np.random.Generator) -> list[Sheet]:

@@ -65,7 +65,7 @@ def baby_hairs(model: HeadModel, amount: Amount, look: HairLook, beside: float, 
     combed = unit_rows(combed - n * (combed * n).sum(1, keepdims=True))
     length = rng.uniform(*_BABY_LENGTH, (count, 1, 1))
     fall = np.array([0.0, -0.35, 0.0])
-    points = roots.places[:, None] + length * (t * combed[:, None] + 0.35 * np.sin(2.0 * t) * n[:, None] + t**2 * fall)
+    points = roots.places[:, None] + length * (t * combed[:, None] + 0.2 * np.sin(2.0 * t) * n[:, None] + t**2 * fall)
     paint = paints(look, np.full(count, 1.1), np.full(count, 0.45), rng, 0.4)
     return StrandSet(points, _BABY_WIDTH * amount.radius * rng.uniform(0.6, 1.2, count), paint,
                   np.ones((count, len(t))), np.ones(count), np.ones(count))  # fmt: skip
