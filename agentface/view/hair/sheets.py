@@ -19,7 +19,7 @@ from agentface.view.hair.styles import REFERENCE_EYES, STYLES
 
 _EVERY, _ROWS = 3, 24
 """Which of the columns they have; points along each."""
-_LAYER_AT_ROOT, _LAYER, _SHARE = 0.66, 0.42, 0.91
+_LAYER_AT_ROOT, _LAYER, _SHARE = 0.66, 0.42, 0.96
 """Where between the skin and the outside of the hair the sheets lie, and how long they are beside the cards."""
 _LIGHT_AT_ROOT, _LIGHT = 0.68, 0.42
 """How much light the cards let through to them."""
