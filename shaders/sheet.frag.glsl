@@ -41,7 +41,7 @@ void main() {
     float narrow = mix(1.4, 0.82, card * smoothstep(0.0, 0.2, along)) - (0.10 + 0.35 * own) * smoothstep(APART, 1.0, along);
     float edge = EDGE * (strand.x - CARDS * card) * (1.2 - along) + 0.8 * along + 1.2 * drift.g;   // fewer hairs frame the face
     float last = 1.0 - TIP * ((0.3 + own) * ends * ends + 0.3 * own + 0.2 * here);
-    vec4 within = vec4(edge - 0.1 - here, (last - along) / (0.6 * TIP) - point, narrow + 0.32 * here - abs(lock), along - ROOT * (1.6 * ends - 0.4));
+    vec4 within = vec4(edge + mix(0.2, -0.1, card) - here, (last - along) / (0.6 * TIP) - point, narrow + 0.32 * here - abs(lock), along - ROOT * (1.6 * ends - 0.4));
     vec4 soft = vec4(min(EDGE / many * pixel.x, 0.3) + 0.5 * unseen, pixel.y / (0.6 * TIP) + min(2.0 / WISP * pixel.x, 1.0), 2.0 / many * pixel.x + 0.3 * unseen, pixel.y + 0.3 * ROOT);
     vec4 covered = clamp(0.5 + within / soft, 0.0, 1.0);
     float cover = min(min(covered.x, covered.y), min(covered.z, covered.w));
