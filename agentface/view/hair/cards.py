@@ -33,13 +33,13 @@ _NUMBERS, _OWN = 24, 40.0
 """What the shader draws hairs by, few enough for its arithmetic."""
 _AT_PARTING, _RISE = 0.22, 0.050
 """How high cards lie where they start, as a part of the hair's thickness, and the metres over which they rise."""
-_LOW = 0.45
+_LOW = 0.62
 """How high the lowest lie, as a part of the hair's thickness."""
 _GOLDEN = 0.618
 """Turns from the height of a card to the next one's, so that neighbours lie apart."""
 _APART = 0.0025
 """Metres by which the highest lie over the lowest from the root on, so that none cut through others."""
-_WISPS, _WISP_WIDTH, _WISP_DRIFT = 4, 0.4, 1.8
+_WISPS, _WISP_WIDTH, _WISP_DRIFT = 4, 0.4, 1.2
 """Every how many cards at the face one is a wisp; how wide, and how far off its way, beside the others."""
 _TUCKED = 0.45
 """How high the first of them lies, as a part of the hair's thickness."""
