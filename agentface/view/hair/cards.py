@@ -49,7 +49,7 @@ _WAVE, _WAVE_LENGTH, _WAVY = 0.0060, (0.10, 0.17), 0.09
 """Metres to and fro of the curliest hair, from wave to wave, and from the root to where they are whole."""
 _DRIFT, _TWIST = 0.0040, 0.20
 """Metres that ends leave their course, and how steeply cards lie across it: of most of them at most."""
-_LOWEST = 0.0055
+_LOWEST = 0.0075
 """Metres over the hull, which is smoother than the head: above the sheets below."""
 _TURNED_IN = 0.014
 """Metres that ends turn in at most, besides all of them."""
