@@ -17,7 +17,7 @@ from agentface.view.hair.hull import Hull
 from agentface.view.hair.ribbons import unit_rows
 from agentface.view.hair.styles import REFERENCE_EYES, STYLES
 
-_EVERY, _ROWS = 3, 24
+_EVERY, _ROWS = 3, 21
 """Which of the columns they have; points along each."""
 _LAYER_AT_ROOT, _LAYER, _SHARE = 0.66, 0.42, 0.96
 """Where between the skin and the outside of the hair the sheets lie, and how long they are beside the cards."""
