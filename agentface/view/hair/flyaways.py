@@ -57,7 +57,7 @@ def baby_hairs(model: HeadModel, amount: Amount, look: HairLook, beside: float, 
     """Short hairs of the hairline, combed away from a parting ``beside`` metres from the middle of the head."""
     line = Hairline(model, look.hairline)
     roots = HairRoots.drawn(model, model.normals, line, round(_BABIES * amount.hairs), rng, elsewhere=0.0)
-    roots = roots.before(_BABY_DEPTH)
+    roots = roots.before(line, _BABY_DEPTH)
     count, t = len(roots), np.linspace(0.0, 1.0, amount.points)[:, None]
     n = roots.normals
     side = np.sign(roots.places[:, :1] - beside)
