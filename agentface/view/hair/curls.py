@@ -34,7 +34,7 @@ def crop(
     short = np.clip(roots.depth / line.taper(roots.places, _WHOLE), 0.10, 1.0)
     height = look.volume * look.length * style.thickness * short * (0.62 + 0.38 * layer)
     radius = _COIL * look.curl * (0.6 + 0.8 * rng.random(count)) * (0.4 + 0.6 * short)
-    turn = 2 * np.pi * (rng.random(count)[:, None] + (0.8 + 0.5 * rng.random(count)[:, None]) * t)
+    turn = 2 * np.pi * (rng.random(count)[:, None] + (1.15 + 0.5 * rng.random(count)[:, None]) * t)
     lean = rng.normal(0, 0.0008, (count, 2)) * short[:, None]
     side = radius[:, None] * np.clip(3 * t, 0, 1)
     points = roots.places[:, None] + n[:, None] * (height[:, None] * t)[..., None]
