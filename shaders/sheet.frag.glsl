@@ -37,12 +37,13 @@ void main() {
     float hairs = many * strand.x + 1.5 * drift.r, wisp = hairs / WISP;
     vec2 pixel = vec2(many, 1.0) * fwidth(spread) + 1e-4;
     float hair_seen = seen(pixel.x), wisp_seen = seen(pixel.x / WISP), unseen = 1.0 - hair_seen;
-    float here = varied(hairs, hair_seen), ends = varied(wisp + 7.0, wisp_seen), point = mix(0.5, abs(2.0 * fract(wisp) - 1.0), wisp_seen);
+    float here = varied(hairs, hair_seen), ends = varied(wisp + 7.0, wisp_seen), point = wisp_seen * abs(2.0 * fract(wisp) - 1.0);
     float narrow = mix(1.4, 0.82, card * smoothstep(0.0, 0.2, along)) - (0.10 + 0.35 * own) * smoothstep(APART, 1.0, along);
+    narrow *= mix(min((1.0 - along) / (1.5 * TIP), 1.0), 1.0, wisp_seen);   // far away it is the lock that ends in a point
     float edge = EDGE * (strand.x - CARDS * card) * (1.2 - along) + 0.8 * along + 1.2 * drift.g;   // fewer hairs frame the face
     float last = 1.0 - TIP * ((0.3 + own) * ends * ends + 0.3 * own + 0.2 * here);
     vec4 within = vec4(edge + mix(0.2, -0.1, card) - here, (last - along) / (0.6 * TIP) - point, narrow + 0.32 * here - abs(lock), along - ROOT * (1.6 * ends - 0.4));
-    vec4 soft = vec4(min(EDGE / many * pixel.x, 0.3) + 0.5 * unseen, pixel.y / (0.6 * TIP) + min(2.0 / WISP * pixel.x, 1.0), 2.0 / many * pixel.x + 0.3 * unseen, pixel.y + 0.3 * ROOT);
+    vec4 soft = vec4(min(EDGE / many * pixel.x, 0.3) + 0.5 * unseen, pixel.y / (0.6 * TIP) + min(2.0 / WISP * pixel.x, 0.5), 2.0 / many * pixel.x + 0.3 * unseen, pixel.y + 0.3 * ROOT);
     vec4 covered = clamp(0.5 + within / soft, 0.0, 1.0);
     float cover = min(min(covered.x, covered.y), min(covered.z, covered.w));
     if (cover < least_cover) discard;
