@@ -20,7 +20,7 @@ void main() {
     vec3 n = mat3(head) * facing, light = hemisphere(n) * material.y;
     for (int i = 0; i < LIGHTS; i++) light += light_colour[i].rgb * clamp(0.6 * dot(n, light_direction[i].xyz) + 0.4, 0.0, 1.0) * 0.8;
     lit = finish(hair_colour * light);
-    scalp = finish(0.55 * skin_tone * light);
+    scalp = finish(0.26 * skin_tone * light);
     rest_position = rest;
     edge = material.x;
     gl_Position = view_projection * head * vec4(mean + offset, 1.0);

@@ -2,6 +2,7 @@
 centroid in vec3 dull, bright;
 centroid in vec4 strand;   // across in locks, along 0..1, light, a number of its own
 centroid in vec3 drift;    // how hairs wander, gaps deepen and light changes
+in vec2 spread;            // the first two of strand, whose differences from pixel to pixel hold at edges, too
 out vec4 colour;           // its opacity becomes coverage of the samples
 
 uniform float least_cover; // of a pixel, that is drawn
@@ -10,7 +11,8 @@ const float HAIRS = 26.0;      // that are seen in a lock
 const float CARDS = 14.0;      // the first number of a lock that is a card
 const float CARD_HAIRS = 15.0; // that are seen in a card
 const float WISP = 3.5;        // hairs that end together in a point
-const float TIP = 0.11;        // of the length, over which hairs end
+const float TIP = 0.14;        // of the length, over which hairs end
+const float ROOT = 0.016;      // of the length, over which they begin
 const float EDGE = 3.0;        // hairs a lock's width, over which the sheet's front edge grows dense
 const float APART = 0.55;      // from here on locks narrow towards their tips
 
@@ -18,25 +20,35 @@ float scattered(float number) {
     return fract(0.618034 * number + 0.37 * floor(strand.w) + 0.11 * fract(0.1415 * number * number));
 }
 
-// From one strand of hairs to the next, 0..1.
-float varied(float hairs) {
+// How much is seen of what differs from one to the next where a pixel holds so many.
+float seen(float pixel) {
+    return clamp(1.5 - 2.0 * pixel, 0.0, 1.0);
+}
+
+// From one strand of hairs to the next, 0..1; their mean where they are not seen.
+float varied(float hairs, float visible) {
     float low = floor(hairs);
-    return mix(scattered(low), scattered(low + 1.0), smoothstep(0.0, 1.0, hairs - low));
+    return mix(0.5, mix(scattered(low), scattered(low + 1.0), smoothstep(0.0, 1.0, hairs - low)), visible);
 }
 
 void main() {
     float along = strand.y, number = floor(strand.x), lock = 2.0 * (strand.x - number) - 1.0, own = scattered(3.0 * number + 1.0);
-    float card = step(CARDS, strand.x);
-    float hairs = mix(HAIRS, CARD_HAIRS, card) * strand.x + 1.5 * drift.r, here = scattered(floor(hairs));
+    float card = step(CARDS, strand.x), many = mix(HAIRS, CARD_HAIRS, card);
+    float hairs = many * strand.x + 1.5 * drift.r, wisp = hairs / WISP;
+    vec2 pixel = vec2(many, 1.0) * fwidth(spread) + 1e-4;
+    float hair_seen = seen(pixel.x), wisp_seen = seen(pixel.x / WISP), unseen = 1.0 - hair_seen;
+    float here = varied(hairs, hair_seen), ends = varied(wisp + 7.0, wisp_seen), point = wisp_seen * abs(2.0 * fract(wisp) - 1.0);
     float narrow = mix(1.4, 0.82, card * smoothstep(0.0, 0.2, along)) - (0.10 + 0.35 * own) * smoothstep(APART, 1.0, along);
-    float edge = EDGE * (strand.x - CARDS * card) * (1.2 - along) + 0.8 * along;   // fewer hairs frame the face
-    float wisp = hairs / WISP, ends = scattered(floor(wisp) + 7.0), last = 1.0 - TIP * ((0.3 + own) * ends * ends + 0.3 * own + 0.2 * here);
-    vec3 within = vec3(edge + 0.25 - here, (last - along) / (0.6 * TIP) - abs(2.0 * fract(wisp) - 1.0), narrow + 0.32 * here - abs(lock));
-    vec3 covered = clamp(0.5 + within / max(fwidth(within), 1e-4), 0.0, 1.0);
-    float cover = min(covered.x, min(covered.y, covered.z));
+    narrow *= mix(min((1.0 - along) / (1.5 * TIP), 1.0), 1.0, wisp_seen);   // far away it is the lock that ends in a point
+    float edge = EDGE * (strand.x - CARDS * card) * (1.2 - along) + 0.8 * along + 1.2 * drift.g;   // fewer hairs frame the face
+    float last = 1.0 - TIP * ((0.3 + own) * ends * ends + 0.3 * own + 0.2 * here);
+    vec4 within = vec4(edge + mix(0.2, -0.1, card) - here, (last - along) / (0.6 * TIP) - point, narrow + 0.32 * here - abs(lock), along - ROOT * (1.6 * ends - 0.4));
+    vec4 soft = vec4(min(EDGE / many * pixel.x, 0.3) + 0.5 * unseen, pixel.y / (0.6 * TIP) + min(2.0 / WISP * pixel.x, 0.5), 2.0 / many * pixel.x + 0.3 * unseen, pixel.y + 0.3 * ROOT);
+    vec4 covered = clamp(0.5 + within / soft, 0.0, 1.0);
+    float cover = min(min(covered.x, covered.y), min(covered.z, covered.w));
     if (cover < least_cover) discard;
-    float strands = 0.6 * varied(0.43 * hairs) + 0.4 * here;
+    float strands = 0.6 * ends + 0.4 * here;
     float gap = 1.0 - (0.10 + 0.30 * own) * smoothstep(0.2, 1.0, abs(lock)) * (0.9 + drift.g);
-    float light = (0.78 + 0.44 * strands + 0.22 * drift.b) * gap;
+    float light = (0.82 + 0.36 * strands + 0.22 * drift.b) * gap;
     colour = vec4(mix(dull, bright, strands * strands * gap) * light, least_cover < 0.5 ? cover : 1.0);   // with one sample a pixel there is hair or none
 }

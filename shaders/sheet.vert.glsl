@@ -13,6 +13,7 @@ in vec4 sheet;         // across in locks, along 0..1, light that the hair above
 centroid out vec3 dull, bright;  // between and on the highlights
 centroid out vec4 strand;        // as sheet
 centroid out vec3 drift;         // how hairs wander, gaps deepen and light changes
+out vec2 spread;                 // the first two of strand
 
 uniform vec3 hair_colour;
 uniform float gloss;
@@ -29,6 +30,7 @@ void main() {
     dull = finish(light.body + 0.45 * light.shine);
     bright = finish(light.body + 2.6 * light.shine);
     strand = sheet;
+    spread = sheet.xy;
     drift = noise(vec3(0.23 * sheet.x, 0.9 * sheet.y, 0.31 * sheet.w)).rgb - 0.5;
     gl_Position = view_projection * vec4(placed, 1.0);
 }

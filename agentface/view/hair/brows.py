@@ -12,8 +12,10 @@ from agentface.view.hair.ribbons import Hairs, Roots, roots_along, roots_in_fron
 
 _BROW_HAIRS = 520
 _UPPER_LASHES, _LOWER_LASHES = 90, 42
-_LASH_LINE, _GATHERED = 0.030, 0.8
+_LASH_LINE, _GATHERED = 0.030, 0.9
 """Metres of lid that lashes stand on; how far the tips of a bundle come together."""
+_UPPER_UNEQUAL, _LOWER_UNEQUAL = (0.55, 1.15), (0.85, 1.15)
+"""How long the bundles of the upper and lower lashes are."""
 _REFERENCE_EYES = 0.0525
 """The distance between the pupils, metres, that the sizes below are meant for."""
 
@@ -109,16 +111,16 @@ def _lash_row(
     outward = np.linspace(0.95, 0.10, count) + rng.normal(0, 0.006, count)  # 1 at the temple
     roots = roots_along(half, model.vertices, np.clip(1 - outward, 0.0, 1.0))
     lengths = (length * (0.45 + 0.65 * outward) * (0.7 + 0.5 * rng.random(count)))[:, None]
-    # lashes stick together by threes and fours, and are unequal
-    bundle = np.repeat(np.arange(count), rng.integers(2, 5, count))[:count]
+    # lashes stick together by twos to sixes, and are unequal
+    bundle = np.repeat(np.arange(count), rng.integers(2, 7, count))[:count]
     middle = (np.bincount(bundle, outward) / np.maximum(np.bincount(bundle), 1))[bundle]
-    lengths = lengths * rng.uniform(0.8, 1.15, count)[bundle][:, None]
+    lengths = lengths * rng.uniform(*(_UPPER_UNEQUAL if upper else _LOWER_UNEQUAL), count)[bundle][:, None]
     together = _GATHERED * _LASH_LINE * (middle - outward)[:, None] / lengths
-    fan = (outward - 0.45) * 1.1 + rng.normal(0, 0.12, count)[bundle] + rng.normal(0, 0.05, count)
+    fan = (outward - 0.30) * 1.5 + rng.normal(0, 0.16, count)[bundle] + rng.normal(0, 0.05, count)
     fan = (fan[:, None] + together) * (1.0 if side == "l" else -1.0)
-    rise = (-0.14, 0.60) if upper else (-0.10, -0.35)
-    reach = (0.50, 0.68) if upper else (0.60, 0.90)
-    bends = lengths * np.concatenate([0.35 * fan, np.full_like(fan, rise[0]), np.full_like(fan, reach[0])], axis=1)
+    rise = (-0.20, 0.46) if upper else (-0.10, -0.35)
+    reach = (0.55, 0.72) if upper else (0.60, 1.05)
+    bends = lengths * np.concatenate([0.25 * fan, np.full_like(fan, rise[0]), np.full_like(fan, reach[0])], axis=1)
     tips = lengths * np.concatenate([0.75 * fan, np.full_like(fan, rise[1]), np.full_like(fan, reach[1])], axis=1)
     radii = (0.00022 if upper else 0.00010) * (0.8 + 0.4 * rng.random(count))
     paint = np.tile([0.008, 0.006, 0.005, 0.9 if upper else 0.65], (count, 1))

@@ -14,18 +14,18 @@ from agentface.view.hair.drape import draped
 from agentface.view.hair.groom import smoothed
 from agentface.view.hair.hull import Hull
 from agentface.view.hair.ribbons import unit_rows
-from agentface.view.hair.sheets import FIRST_CARD, ROOTWARD, Sheet, resampled
+from agentface.view.hair.sheets import FIRST_CARD, Sheet, parts_along, resampled
 from agentface.view.hair.styles import REFERENCE_EYES, STYLES
 from agentface.view.hair.visible import Flags
 
-_CARDS, _ROWS = 36, 20
+_CARDS, _ROWS = 36, 28
 """On each side; points along each."""
 _ACROSS = np.array([-1.0, 1.0])
 _TO_THE_FRONT = 1.25
 """The exponent with which they gather at the face."""
 _JITTER = 0.7
 """Of the space between cards, by which they stand off their places."""
-_OVERLAP, _WIDTHS, _NARROWEST, _NARROWED = 1.7, (0.7, 1.35), 0.0022, 0.40
+_OVERLAP, _WIDTHS, _NARROWEST, _NARROWED = 1.7, (0.7, 1.35), 0.0022, 0.55
 """A card's width in spaces between cards, and how it differs; its least half width, metres; the part its end loses."""
 _SHORTEST, _LONGEST, _MOSTLY_LONG, _ALIKE = 0.84, 1.04, 0.6, 0.35
 """Parts of the whole length, and the exponent of chance between them; up to where along it all lie side by side."""
@@ -33,13 +33,13 @@ _NUMBERS, _OWN = 24, 40.0
 """What the shader draws hairs by, few enough for its arithmetic."""
 _AT_PARTING, _RISE = 0.22, 0.050
 """How high cards lie where they start, as a part of the hair's thickness, and the metres over which they rise."""
-_LOW = 0.45
+_LOW = 0.62
 """How high the lowest lie, as a part of the hair's thickness."""
 _GOLDEN = 0.618
 """Turns from the height of a card to the next one's, so that neighbours lie apart."""
-_APART = 0.0015
+_APART = 0.0025
 """Metres by which the highest lie over the lowest from the root on, so that none cut through others."""
-_WISPS, _WISP_WIDTH, _WISP_DRIFT = 4, 0.4, 1.8
+_WISPS, _WISP_WIDTH, _WISP_DRIFT = 4, 0.4, 1.2
 """Every how many cards at the face one is a wisp; how wide, and how far off its way, beside the others."""
 _TUCKED = 0.45
 """How high the first of them lies, as a part of the hair's thickness."""
@@ -49,11 +49,13 @@ _WAVE, _WAVE_LENGTH, _WAVY = 0.0060, (0.10, 0.17), 0.09
 """Metres to and fro of the curliest hair, from wave to wave, and from the root to where they are whole."""
 _DRIFT, _TWIST = 0.0040, 0.20
 """Metres that ends leave their course, and how steeply cards lie across it: of most of them at most."""
-_LOWEST = 0.0055
+_LOWEST = 0.0075
 """Metres over the hull, which is smoother than the head: above the sheets below."""
 _TURNED_IN = 0.014
 """Metres that ends turn in at most, besides all of them."""
-_ROOT_LIGHT = 0.70
+_OVER_PARTING, _OVER_PARTING_REACH = 0.0022, 0.006
+"""Metres by which roots lie over the parting at most, and along the hair in which that falls to a third."""
+_ROOT_LIGHT = 0.60
 """At the root, as a part of that at the end."""
 
 
@@ -74,7 +76,7 @@ class _Course:
     @classmethod
     def drawn(cls, paths: Doubles, rng: np.random.Generator) -> _Course:
         """On ``paths (C, K, 3)`` m, one in each of equal parts of them."""
-        last, t = len(paths) - 1.0, np.linspace(0.0, 1.0, _ROWS) ** ROOTWARD
+        last, t = len(paths) - 1.0, parts_along(_ROWS)
         place = (np.arange(_CARDS) + rng.uniform(0.0, _JITTER, _CARDS)) / _CARDS
         column = last * place**_TO_THE_FRONT
         share = _SHORTEST + (_LONGEST - _SHORTEST) * rng.random(_CARDS)[:, None] ** _MOSTLY_LONG
@@ -127,7 +129,9 @@ def _lying(
     sway = grown * rng.uniform(0.4, 1.0, (_CARDS, 1)) * np.sin(turn) + drift[:, None] * t**1.5
     height = height + 0.35 * grown * np.cos(turn)
     points = middle + sway[..., None] * across + height[..., None] * out
-    return smoothed(hull.push_out(points, apart + 0.002 + _LOWEST * smoothstep(0.0, 0.03, along)), 1)
+    rootward = _OVER_PARTING * rng.random((_CARDS, 1)) * np.exp(-along / _OVER_PARTING_REACH)
+    points = points - rootward[..., None] * unit_rows(np.gradient(middle, axis=1))
+    return smoothed(hull.push_out(points, apart + 0.002 + _LOWEST * smoothstep(0.0, 0.03, along)), 2)
 
 
 def _woven(hull: Hull, course: _Course, points: Doubles, layer: Doubles, rng: np.random.Generator) -> list[Sheet]:

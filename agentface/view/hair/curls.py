@@ -17,7 +17,7 @@ _WHOLE = 0.016
 """Metres behind the hairline of the forehead where a crop has its whole length."""
 _COIL = 0.0013
 """Metres from a coil's axis to its hair where hair is as curly as it gets."""
-_IN_A_CLUMP, _CLUMPED, _CLUMP_TINT = 9, 0.65, (0.9, 3.0)
+_IN_A_CLUMP, _CLUMPED, _CLUMP_TINT = 9, 0.40, (0.9, 3.0)
 """Coils that gather, by how much of the way, and how dark or light clumps are."""
 _BUN_SHARE = 0.35
 
@@ -32,10 +32,10 @@ def crop(
     x = unit_rows(np.cross(n, rng.normal(size=(count, 3))))
     y = np.cross(n, x)
     short = np.clip(roots.depth / line.taper(roots.places, _WHOLE), 0.10, 1.0)
-    height = look.volume * look.length * style.thickness * short * (0.45 + 0.55 * layer)
+    height = look.volume * look.length * style.thickness * short * (0.62 + 0.38 * layer)
     radius = _COIL * look.curl * (0.6 + 0.8 * rng.random(count)) * (0.4 + 0.6 * short)
-    turn = 2 * np.pi * (rng.random(count)[:, None] + (0.8 + 0.5 * rng.random(count)[:, None]) * t)
-    lean = rng.normal(0, 0.0012, (count, 2)) * short[:, None]
+    turn = 2 * np.pi * (rng.random(count)[:, None] + (1.15 + 0.5 * rng.random(count)[:, None]) * t)
+    lean = rng.normal(0, 0.0008, (count, 2)) * short[:, None]
     side = radius[:, None] * np.clip(3 * t, 0, 1)
     points = roots.places[:, None] + n[:, None] * (height[:, None] * t)[..., None]
     points = points + x[:, None] * (side * np.cos(turn) + lean[:, :1] * t)[..., None]

@@ -20,13 +20,13 @@ _ON_PARTING = 0.45
 _TURNS_DEG = (45.0, 186.0)
 """Round the head from the front, where it is widest: where the first and the last column lie."""
 _ARC, _FALL = 24, 14
-_SMOOTHINGS, _PULLS = 8, 10
+_SMOOTHINGS, _PULLS, _LAST_SMOOTHINGS = 8, 10, 30
 """Hair hangs taut over what stands out: smoothed, and pushed out of the head again, so many times."""
 _WHORL = 0.006
 """Metres round the whorl where hair starts."""
-_BESIDE = 0.0011
+_BESIDE = 0.0008
 """Metres from the parting where hair starts."""
-_ZIGZAG = ((0.0011, 240.0, 0.0), (0.0006, 610.0, 1.3))
+_ZIGZAG = ((0.0013, 240.0, 0.0), (0.0007, 610.0, 1.3))
 """Waves of the parting, which is no line: metres to both sides, radians a metre, where each starts."""
 _FRAMING_DEG, _FRAMING_REACH_DEG = 14.0, 24.0
 """How far the hair at the face comes forward over the cheeks, and to which turn behind it does."""
@@ -48,7 +48,7 @@ def draped(model: HeadModel, look: HairLook, hull: Hull, sign: float) -> Doubles
     path = np.concatenate([arc, _fall(model, look, arc[:, -1] - hull.centre, sign, scale) + hull.centre], axis=1)
     for _ in range(_PULLS):
         path = hull.push_out(smoothed(path, _SMOOTHINGS), 0.0)
-    return smoothed(path, 12)
+    return smoothed(path, _LAST_SMOOTHINGS)
 
 
 def _fall(model: HeadModel, look: HairLook, widest: Doubles, sign: float, scale: float) -> Doubles:

@@ -7,6 +7,7 @@ import numpy as np
 from agentface.conventions import SIDES
 from agentface.head.look import HairLook
 from agentface.head.model import HeadModel
+from agentface.view.hair.groom import smoothed
 from agentface.view.hair.hairline import Hairline, HairRoots
 from agentface.view.hair.ribbons import unit_rows
 from agentface.view.hair.sheets import Sheet
@@ -15,12 +16,14 @@ from agentface.view.hair.styles import Amount
 
 _AWAY = 0.004
 """Metres that they leave it."""
-_LOOSE, _LOOSE_AWAY = 0.18, 2.5
+_LOOSE, _LOOSE_AWAY = 0.08, 1.8
 """The part of them that leaves it farther, and how much farther."""
 _AT_FACE, _TO_THE_FRONT = 0.6, 5.0
 """The part of them that gathers at the face, and the exponent with which it does."""
-_BABIES, _BABY_LENGTH, _BABY_WIDTH = 0.4, (0.005, 0.013), 0.7
-"""Short hairs for each flyaway; metres; their width beside that of flyaways."""
+_BABIES, _BABY_LENGTH, _BABY_WIDTH, _BABY_DEPTH = 1.2, (0.005, 0.013), 0.7, 0.005
+"""Short hairs for each flyaway; metres; their width beside that of flyaways; the most metres behind the hairline."""
+_SMOOTHINGS = 4
+"""Of the card's course, which has fewer points."""
 _ACROSS = 1.8
 """Half widths of a card within which they start."""
 
@@ -39,6 +42,7 @@ def flyaways(cards: list[Sheet], amount: Amount, look: HairLook, rng: np.random.
     low, part = row.astype(int), (row % 1.0)[..., None]
     each = np.arange(count)[:, None]
     points = (1.0 - part) * lines[each, low] + part * lines[each, low + 1]
+    points = smoothed(points, _SMOOTHINGS)
     away = unit_rows(points - cards[0].centre)
     far = _AWAY * np.where(rng.random(count) < _LOOSE, _LOOSE_AWAY, 1.0)[:, None]
     off = rng.uniform(0.0, 1.0, (count, 1)) * far * np.sin(np.pi * t * rng.uniform(0.4, 1.0, (count, 1)))
@@ -53,6 +57,7 @@ def baby_hairs(model: HeadModel, amount: Amount, look: HairLook, beside: float, 
     """Short hairs of the hairline, combed away from a parting ``beside`` metres from the middle of the head."""
     line = Hairline(model, look.hairline)
     roots = HairRoots.drawn(model, model.normals, line, round(_BABIES * amount.hairs), rng, elsewhere=0.0)
+    roots = roots.before(line, _BABY_DEPTH)
     count, t = len(roots), np.linspace(0.0, 1.0, amount.points)[:, None]
     n = roots.normals
     side = np.sign(roots.places[:, :1] - beside)
@@ -60,7 +65,7 @@ def baby_hairs(model: HeadModel, amount: Amount, look: HairLook, beside: float, 
     combed = unit_rows(combed - n * (combed * n).sum(1, keepdims=True))
     length = rng.uniform(*_BABY_LENGTH, (count, 1, 1))
     fall = np.array([0.0, -0.35, 0.0])
-    points = roots.places[:, None] + length * (t * combed[:, None] + 0.35 * np.sin(2.0 * t) * n[:, None] + t**2 * fall)
+    points = roots.places[:, None] + length * (t * combed[:, None] + 0.2 * np.sin(2.0 * t) * n[:, None] + t**2 * fall)
     paint = paints(look, np.full(count, 1.1), np.full(count, 0.45), rng, 0.4)
     return StrandSet(points, _BABY_WIDTH * amount.radius * rng.uniform(0.6, 1.2, count), paint,
                   np.ones((count, len(t))), np.ones(count), np.ones(count))  # fmt: skip

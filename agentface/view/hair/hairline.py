@@ -124,6 +124,11 @@ class HairRoots:
         shown = unit_rows((normals[corners[kept]] * weights[kept][..., None]).sum(1))
         return cls(places[kept], shown, depth[kept])
 
+    def before(self, line: Hairline, depth: float) -> HairRoots:
+        """Those that are less than ``depth`` metres behind the hairline and none on the ears."""
+        kept = line.behind(self.places) < depth
+        return HairRoots(self.places[kept], self.normals[kept], self.depth[kept])
+
     def __len__(self) -> int:
         return len(self.depth)
 

@@ -17,9 +17,9 @@ from agentface.view.hair.hull import Hull
 from agentface.view.hair.ribbons import unit_rows
 from agentface.view.hair.styles import REFERENCE_EYES, STYLES
 
-_EVERY, _ROWS = 3, 18
+_EVERY, _ROWS = 3, 21
 """Which of the columns they have; points along each."""
-_LAYER_AT_ROOT, _LAYER, _SHARE = 0.66, 0.42, 0.97
+_LAYER_AT_ROOT, _LAYER, _SHARE = 0.66, 0.42, 0.96
 """Where between the skin and the outside of the hair the sheets lie, and how long they are beside the cards."""
 _LIGHT_AT_ROOT, _LIGHT = 0.68, 0.42
 """How much light the cards let through to them."""
@@ -27,15 +27,15 @@ _AT_PARTING, _RISE = 0.22, 0.050
 """How high hair lies where it starts, as a part of its thickness, and the metres over which it rises from there."""
 _EDGE_SHADE, _EDGE_REACH = 0.7, 0.013
 """How much light the front edge keeps off the skin below it, and within how many metres."""
-ROOTWARD = 1.25
-"""The exponent with which the points along hair gather at its root."""
+_ROOTWARD = 0.45
+"""How much denser than half way the points along hair are at its root, where it lies round the head."""
 LOCKS, FIRST_CARD, PAINTED = 13, 14, 26
 """Of a sheet; the number of the first card; up to which number ``shaders/sheet_flat.vert.glsl`` paints."""
 _WIDTHS = 0.3, 1.7
 """Of the spaces between columns, in locks, as parts of their mean."""
 _UNEVEN = 0.05
 """The part by which the lengths of locks differ."""
-_LOWEST = 0.0045
+_LOWEST = 0.0060
 """Metres over the hull, which is smoother than the head."""
 _TUCKED = 0.2
 """How high the front edge lies, as a part of the hair's thickness."""
@@ -92,7 +92,7 @@ def edge_shade(grown: list[Sheet], skin: Floats) -> Doubles:
 def _sheet(hull: Hull, look: HairLook, paths: Doubles, thickness: float, rng: np.random.Generator) -> Sheet:
     widths = rng.uniform(*_WIDTHS, len(paths) - 1)
     across = np.concatenate([[0.0], np.cumsum(widths)]) * LOCKS / widths.sum()
-    t = np.linspace(0.0, 1.0, _ROWS) ** ROOTWARD
+    t = parts_along(_ROWS)
     uneven = np.interp(across, np.arange(LOCKS + 1), rng.uniform(0.0, 1.0, LOCKS + 1))
     points, along = resampled(paths, _SHARE * (1.0 - _UNEVEN * uneven)[:, None] * t)
     tucked = _TUCKED + (1.0 - _TUCKED) * smoothstep(0.0, 1.5, across)[:, None]
@@ -106,6 +106,12 @@ def _sheet(hull: Hull, look: HairLook, paths: Doubles, thickness: float, rng: np
     light = _LIGHT + (_LIGHT_AT_ROOT - _LIGHT) * near_root
     places = np.stack(np.broadcast_arrays(across[:, None], t, light, uneven[:, None]), axis=2)
     return Sheet(points.astype(np.float32), places.astype(np.float32), hull.centre)
+
+
+def parts_along(rows: int) -> Doubles:
+    """``(rows,)``: points along hair, 0..1, more of them on the head than where it hangs."""
+    even = np.linspace(0.0, 1.0, rows)
+    return np.asarray(even * (1.0 - _ROOTWARD * (1.0 - even)))
 
 
 def resampled(paths: Doubles, parts: Doubles) -> tuple[Doubles, Doubles]:

@@ -54,7 +54,7 @@ class Style:
 STYLES = {
     "cropped": Style(
         0.006, 0.006, 0, 0, 0, 1.0, False,
-        {"fast": Amount(0, 0.0, 1000, 0.0005, 4), "portrait": Amount(0, 0.0, 4700, 0.00030, 6)},
+        {"fast": Amount(0, 0.0, 1000, 0.0005, 4), "portrait": Amount(0, 0.0, 4700, 0.00025, 6)},
     ),
     "swept": Style(
         0.013, 0.022, 0.70, 0.03, 0.35, 0.80, False,
@@ -62,7 +62,7 @@ STYLES = {
     ),
     "bob": Style(
         0.012, 0.040, 0.72, 0.16, 0.32, 0.94, True,
-        {"fast": Amount(0, 0.0, 30, 0.0005, 6), "portrait": Amount(0, 0.0, 100, 0.00028, 7)},
+        {"fast": Amount(0, 0.0, 24, 0.0004, 10), "portrait": Amount(0, 0.0, 70, 0.00022, 14)},
     ),
     "bun": Style(
         0.007, 0.060, 0.55, 0.0, 0.35, 0.84, False,
