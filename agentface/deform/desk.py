@@ -13,10 +13,6 @@ from typing import TYPE_CHECKING, Any
 from numba import types
 from numba.experimental import structref
 
-if TYPE_CHECKING:
-    from agentface.deform.order_compiled import Scratch
-    from agentface.deform.tables import FaceTables
-
 
 @structref.register
 class DeskType(types.StructRef):
@@ -30,12 +26,14 @@ class DeskType(types.StructRef):
 class Desk(structref.StructRefProxy):
     """A face's tables and the worker's scratch; kernels make it and read it."""
 
-    tables: FaceTables
-    scratch: Scratch
+    tables: Any
+    """:class:`~agentface.deform.tables.FaceTables`"""
+    scratch: Any
+    """:class:`~agentface.deform.order_compiled.Scratch`"""
 
     if TYPE_CHECKING:
 
-        def __init__(self, tables: FaceTables, scratch: Scratch) -> None: ...
+        def __init__(self, tables: Any, scratch: Any) -> None: ...
 
 
 structref.define_constructor(Desk, DeskType, ["tables", "scratch"])

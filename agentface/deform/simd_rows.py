@@ -28,20 +28,20 @@ _THIRD = ir.Constant(_I32, 2)
 _intrinsic: Any = extending.intrinsic
 
 
-class Row(types.Type):
+class RegisterRow(types.Type):
     """The type of a row, inside a kernel only."""
 
     def __init__(self) -> None:
         super().__init__(name=f"float32x{_WIDTH}")
 
 
-@register_default(Row)
+@register_default(RegisterRow)
 class _RowModel(PrimitiveModel):
     def __init__(self, manager: Any, kind: Any) -> None:
         super().__init__(manager, kind, _ROW)
 
 
-_TYPE: Any = Row()
+_TYPE: Any = RegisterRow()
 
 
 def _shuffled(builder: Any, row: Any, *order: int) -> Any:
@@ -188,11 +188,11 @@ def _define(symbol: Any, name: str) -> None:
 
     @extending.overload(symbol, strict=False)
     def choose(a: Any, b: Any) -> Any:
-        if isinstance(a, Row) and isinstance(b, Row):
+        if isinstance(a, RegisterRow) and isinstance(b, RegisterRow):
             return operation_of_two
-        if isinstance(a, Row) and b == types.float32:
+        if isinstance(a, RegisterRow) and b == types.float32:
             return lambda a, b: operation(a, row_of(b))
-        if a == types.float32 and isinstance(b, Row):
+        if a == types.float32 and isinstance(b, RegisterRow):
             return lambda a, b: operation(row_of(a), b)
         return None
 

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from agentface.conventions import Floats
-from agentface.deform.morphs_compiled import jaw_slide
+from agentface.deform import morphs
 from agentface.deform.mouth.contact import APART, PARTINGS, ROUNDS, TOUCH
 from agentface.deform.mouth.contact_tables import ContactTables
 from agentface.deform.mouth.lip_bite_compiled import bite
@@ -18,6 +18,8 @@ from agentface.kernel import kernel
 
 _ZERO, _ONE = np.float32(0.0), np.float32(1.0)
 _TWO, _THREE, _FOUR = np.float32(2.0), np.float32(3.0), np.float32(4.0)
+
+jaw_slide = kernel(error_model="numpy")(morphs.jaw_slide)
 
 
 @kernel(error_model="numpy")

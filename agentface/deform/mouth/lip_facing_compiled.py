@@ -27,7 +27,7 @@ class Facing(NamedTuple):
 
     Attributes:
         columns: K; ``others``: those of the other lip.
-        start: where its columns begin in :attr:`Mouth.heights`; ``others_start``: where the other's do.
+        start: where its columns begin in :attr:`LipColumns.heights`; ``others_start``: where the other's do.
         sign: 1 for the upper lip, else -1.
         column: int32 ``(N,)``, the column of each vertex; ``inner (N,)``, 1 and in the corners and behind the end 0.
         at_rest: ``(N,)`` m, how far it overlaps there at rest.
@@ -57,7 +57,7 @@ class Facing(NamedTuple):
     push: Floats
 
 
-class Mouth(NamedTuple):
+class LipColumns(NamedTuple):
     """Both lips: the C columns of the upper one, then those of the lower one, up to whole blocks.
 
     ``heights (R, C)`` m are those of all rings, ``across (r, C)`` m the x of those that may touch.
@@ -70,13 +70,13 @@ class Mouth(NamedTuple):
 
 
 @kernel(error_model="numpy")
-def look(tables: ContactTables, points: Floats) -> Mouth:
+def look(tables: ContactTables, points: Floats) -> LipColumns:
     """The lips of ``points (P, 3)`` m."""
     upper, lower = tables.upper.shape[0], tables.lower.shape[0]
     rings, count = tables.last + 1 - tables.first, _blocks(upper + lower)
     heights = np.zeros((tables.grid.shape[0], count), np.float32)
     across = np.zeros((rings, count), np.float32)
-    mouth = Mouth(
+    mouth = LipColumns(
         heights,
         across,
         _new_facing(rings, upper, lower, 0, upper, _ONE, tables.overlap_upper),
@@ -87,7 +87,7 @@ def look(tables: ContactTables, points: Floats) -> Mouth:
 
 
 @kernel(error_model="numpy")
-def look_again(tables: ContactTables, points: Floats, mouth: Mouth) -> None:
+def look_again(tables: ContactTables, points: Floats, mouth: LipColumns) -> None:
     """Takes the lips of other ``points (P, 3)`` m into ``mouth``."""
     for ring in range(mouth.heights.shape[0]):
         for k in range(tables.lips.shape[1]):
@@ -100,7 +100,7 @@ def look_again(tables: ContactTables, points: Floats, mouth: Mouth) -> None:
 
 
 @kernel(error_model="numpy")
-def put(tables: ContactTables, mouth: Mouth, points: Floats) -> None:
+def put(tables: ContactTables, mouth: LipColumns, points: Floats) -> None:
     """Writes the heights to ``points (P, 3)`` m."""
     for ring in range(mouth.heights.shape[0]):
         for k in range(tables.lips.shape[1]):

@@ -9,7 +9,7 @@ import numpy as np
 from agentface.conventions import Floats, Indices
 from agentface.deform.lanes import LANES
 from agentface.deform.mouth.contact_tables import ContactTables
-from agentface.deform.mouth.lip_facing_compiled import Facing, Mouth, look, overlap, take_heights
+from agentface.deform.mouth.lip_facing_compiled import Facing, LipColumns, look, overlap, take_heights
 from agentface.deform.mouth.lip_parting import FARTHEST, SEALED_ABOVE, SEALINGS, SPREAD, STEEP
 from agentface.deform.simd import larger, largest, load, splat, store
 from agentface.kernel import kernel
@@ -18,7 +18,7 @@ _ZERO, _QUARTER, _HALF, _ONE, _TWO = (np.float32(number) for number in (0.0, 0.2
 
 
 @kernel(error_model="numpy")
-def close(tables: ContactTables, press: np.float32, mouth: Mouth) -> None:
+def close(tables: ContactTables, press: np.float32, mouth: LipColumns) -> None:
     """Press draws lips together that are a little apart; as its twin."""
     share = min(_ONE, press / np.float32(tables.shut_from))
     if share <= _ZERO:
@@ -64,7 +64,7 @@ def _gaps(first: int, heights: Floats, facing: Facing) -> Any:
 
 
 @kernel(error_model="numpy")
-def part(tables: ContactTables, apart: np.float32, mouth: Mouth) -> bool:
+def part(tables: ContactTables, apart: np.float32, mouth: LipColumns) -> bool:
     """Whether any lip had to give way: where none had, another round would find none."""
     up, down = np.zeros(mouth.heights.shape[1], np.float32), np.zeros(mouth.heights.shape[1], np.float32)
     any_up = _push_apart(tables.first, mouth.heights, mouth.upper, apart, up, down)
@@ -81,7 +81,7 @@ def part(tables: ContactTables, apart: np.float32, mouth: Mouth) -> bool:
 
 
 @kernel(error_model="numpy")
-def seal(tables: ContactTables, level: np.float32, apart: np.float32, mouth: Mouth) -> None:
+def seal(tables: ContactTables, level: np.float32, apart: np.float32, mouth: LipColumns) -> None:
     """Draws the lips together, whatever has parted them; as its twin."""
     share = _ONE - max(_ZERO, _ONE - level) ** np.float32(0.5 / SEALINGS)
     move = np.zeros(mouth.heights.shape[1], np.float32)

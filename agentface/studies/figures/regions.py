@@ -24,7 +24,7 @@ _COLOURS: dict[str, Colour] = {
     "upper_eyelid": (92, 66, 176),
     "lower_eyelid": (208, 88, 160),
     "middle_face": (44, 142, 100),
-    "upper_lip": (20, 92, 62),
+    "upper_lip": (104, 140, 24),
     "lower_face": (220, 142, 36),
     "lower_lip": (158, 88, 10),
 }
