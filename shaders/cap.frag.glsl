@@ -18,7 +18,7 @@ void main() {
     float dense = sqrt(max(edge, 0.0)) * (0.8 + 0.4 * grain.r), speck = DOTS.x * fine + DOTS.y * coil;
     float dots = smoothstep(0.86 - 1.3 * dense, 1.24 - 1.3 * dense, abs(2.0 * fract(speck) - 1.0));   // stubble, denser and denser
     dots = dense * mix(clamp(1.3 * dense - 0.05, 0.0, 1.0), dots, clamp(1.2 - 1.4 * fwidth(speck), 0.0, 1.0));   // smaller than a pixel: their mean
-    float alpha = mix(soft, dots, coils);
+    float alpha = mix(soft, max(dots, smoothstep(0.72, 0.90, edge)), coils);   // where the cap is solid nothing shines through
     vec3 hair = 0.70 * lit * mix(0.75 + 1.1 * fine, (0.10 + 3.2 * coil * coil * (0.3 + fine)) * (0.5 + grain.r), coils);
     float way = clamp((parting.y - rest_position.z) / max(parting.y - parting.w, 1e-4), 0.0, 1.0);
     float off = abs(rest_position.x - mix(parting.x, parting.z, way));
