@@ -106,7 +106,7 @@ def test_what_rides_on_the_skin_follows_it(page, played_file, face_glb, model, d
         shown = deformer.at(pose)
         for name in ("brows", "lashes", "lining_l"):
             rows = in_the_room(shown, parts[name].at(released(model, shown))[0])
-            assert off_mm(places(page, name), rows) < 1.0, name
+            assert off_mm(places(page, name), rows) < 1.25, name
 
 
 def test_everything_that_has_a_picture_shows_one(page, arkit_file):
