@@ -1,4 +1,4 @@
-"""What of a face moves, as one row of numbers: the skin, the lower teeth and the tongue."""
+"""What of a face moves by itself, as one row of numbers: skin, lower teeth, tongue, and hairs that turn on the skin."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from agentface.io.gltf.face_parts import FacePart, PlacesAndNormals
 from agentface.io.gltf.writer import Target, moved_between
 from agentface.mesh.normals import vertex_normals
 
-SOFT = ("skin", "teeth_lower", "tongue")
+SOFT = ("skin", "teeth_lower", "tongue", "brows", "lashes")
 _STILL_M = 1e-6
 
 
@@ -22,16 +22,18 @@ class Surface:
 
     Args:
         model: the face.
-        parts: its parts, those of ``SOFT`` among them.
+        parts: its parts, those of ``SOFT`` among them; of brows and lashes a look may have none.
     """
 
     def __init__(self, model: HeadModel, parts: Sequence[FacePart]) -> None:
         self._parts, self._triangles = parts, model.triangles
-        self._soft = [next(part for part in parts if part.name == name) for name in SOFT]
+        named = {part.name: part for part in parts}
+        self._soft = [named[name] for name in SOFT if name in named]
         self._at_rest = FaceGeometry.at_rest(model)
         self._rest = {part.name: part.at(self._at_rest) for part in parts}
-        self._ends = np.cumsum([len(self._rest[name][0]) for name in SOFT])
-        self._flat = np.concatenate([self._rest[name][0] for name in SOFT]).astype(np.float64).ravel()
+        places = [self._rest[part.name][0] for part in self._soft]
+        self._ends = np.cumsum([len(rows) for rows in places])
+        self._flat = np.concatenate(places).astype(np.float64).ravel()
 
     @property
     def size(self) -> int:
@@ -48,9 +50,9 @@ class Surface:
         return _moving({part.name: self._target(part, part.at(geometry)) for part in self._parts})
 
     def targets_of(self, row: Doubles) -> dict[str, Target]:
-        """By part, what a movement ``(3 N,)`` m of the skin, the lower teeth and the tongue makes of all."""
+        """By part, what a movement ``(3 N,)`` m of what is in a row makes of all."""
         split = np.split((self._flat + row).reshape(-1, 3).astype(np.float32), self._ends[:-1])
-        shown = dict(zip(SOFT, split, strict=True))
+        shown = {part.name: places for part, places in zip(self._soft, split, strict=True)}
         geometry = self._at_rest.copy()
         geometry.vertices = shown["skin"]
         geometry.normals = geometry.smooth_normals = vertex_normals(shown["skin"], self._triangles).astype(np.float32)

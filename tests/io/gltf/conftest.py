@@ -16,6 +16,7 @@ from agentface.head.look import load_look
 from agentface.head.model import HeadModel
 from agentface.io.gltf.face_glb import FaceGlb, GlbFace
 from agentface.live.loop import Frame
+from agentface.mpeg4.expressions import EXPRESSIONS, expression_pose
 from agentface.mpeg4.natural import natural_poses
 from agentface.parameters import FacePose, indices_of
 
@@ -52,6 +53,7 @@ def poses() -> tuple[FacePose, ...]:
     """Natural poses one after the other, with head, eyes, tongue and shoulders in motion; the first is at rest."""
     rows = 0.7 * natural_poses(9, np.random.default_rng(11)).astype(np.float32)
     rows[0] = 0.0
+    rows[1] = expression_pose(EXPRESSIONS.index("anger"), 63, 0, 0)  # brows that turn
     for name, size in (("head_yaw", 0.6), ("head_pitch", -0.2), ("gaze_yaw", 0.3), ("tongue_raise", 0.5)):
         rows[:, indices_of(name)[0]] = size * np.sin(np.arange(len(rows)))
     rows[:, indices_of("breath")[0]] = np.linspace(0.0, 1.0, len(rows))
