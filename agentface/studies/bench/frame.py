@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from agentface.deform.finish import smooth_normals, smooth_normals_compiled
 from agentface.deform.pipeline import GeometricDeformer
 from agentface.deform.protocol import DEFAULT_DEFORMER, make_deformer
-from agentface.mesh.normals_compiled import write_normals
 from agentface.parameters import PARAMETERS, FacePose
 from agentface.studies.bench.deform import SMILE
 from agentface.studies.bench.timing import blendshapes, interleave, one_thread
@@ -50,9 +50,9 @@ def run(
     """Medians over interleaved rounds, in microseconds a frame, and their ratios.
 
     ``baseline`` is the weighted sum of 52 blendshapes of the same mesh as one float32 product (the faster of the two
-    storage orders) and its vertex normals once, by our compiled kernel. For each of :func:`poses`: ``frame_us`` a
-    frame of the geometric deformer, in one call; its stages one by one, in their order; and the ratio to the baseline.
-    ``_warm_`` is a call directly after another, with its data still in the caches. ``growth`` has, for the same face
+    storage orders) and its vertex normals once, by the kernel that the face has. For each of :func:`poses`:
+    ``frame_us`` a frame of the geometric deformer, in one call; its stages one by one, in their order; and the ratio to the
+    baseline. ``_warm_`` is a call directly after another, with its data still in the caches. ``growth`` has, for the same face
     at several densities (:func:`densities`) and the mixed expression, nanoseconds a vertex and how many times those of
     the coarsest mesh that is: 1 is linear growth. All on one thread (see :func:`agentface.studies.bench.deform.run`).
     """
@@ -83,7 +83,8 @@ def run(
 
 def _baseline(model: HeadModel) -> dict[str, Callable[[], Any]]:
     tasks = blendshapes(model.vertices.size, np.random.default_rng(2))
-    normals = partial(write_normals, model.vertices, model.triangles, np.empty_like(model.vertices))
+    tables, out = smooth_normals.prepare(model), np.empty_like(model.vertices)
+    normals = partial(smooth_normals_compiled.apply, tables, model.vertices, out)
     return tasks | {"normals": normals, "normals_warm": normals}
 
 
