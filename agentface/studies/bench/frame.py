@@ -51,10 +51,11 @@ def run(
 
     ``baseline`` is the weighted sum of 52 blendshapes of the same mesh as one float32 product (the faster of the two
     storage orders) and its vertex normals once, by the kernel that the face has. For each of :func:`poses`:
-    ``frame_us`` a frame of the geometric deformer, in one call; its stages one by one, in their order; and the ratio to the
-    baseline. ``_warm_`` is a call directly after another, with its data still in the caches. ``growth`` has, for the same face
-    at several densities (:func:`densities`) and the mixed expression, nanoseconds a vertex and how many times those of
-    the coarsest mesh that is: 1 is linear growth. All on one thread (see :func:`agentface.studies.bench.deform.run`).
+    ``frame_us`` a frame of the geometric deformer, in one call; its stages one by one, in their order; and the ratio to
+    the baseline. ``_warm_`` is a call directly after another, with its data still in the caches. ``growth`` has, for
+    the same face at several densities (:func:`densities`) and the mixed expression, nanoseconds a vertex and how many
+    times those of the coarsest mesh that is: 1 is linear growth. All on one thread (see
+    :func:`agentface.studies.bench.deform.run`).
     """
     if model is None:
         from agentface.head.model import load_model
