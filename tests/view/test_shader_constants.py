@@ -10,6 +10,7 @@ import pytest
 
 from agentface.resources import data_folder
 from agentface.view.gl import shadow
+from agentface.view.hair import sheets
 from agentface.view.skin import meshes as skin
 from agentface.view.skin import wrinkle_patches
 
@@ -22,6 +23,7 @@ from agentface.view.skin import wrinkle_patches
         ("wrinkles.glsl", r"CREASE_SHADE = ([\d.]+);", wrinkle_patches._CREASE_SHADE),
         ("shadow.glsl", r"at \+ ([\d.]+) \* n", shadow._CLEARANCE),
         ("shadow.glsl", r"q\.z - ([\d.]+)", shadow._SLACK),
+        ("sheet.frag.glsl", r" CARDS = ([\d.]+);", sheets.FIRST_CARD),
         ("surface.glsl", r"SKIN_COLUMNS = (\d+);", skin._COLUMNS),
     ],
 )

@@ -14,8 +14,8 @@ from agentface.view.hair.drape import draped
 from agentface.view.hair.groom import smoothed
 from agentface.view.hair.hull import Hull
 from agentface.view.hair.ribbons import unit_rows
-from agentface.view.hair.sheets import FIRST_CARD, Sheet, parts_along, resampled
-from agentface.view.hair.styles import REFERENCE_EYES, STYLES
+from agentface.view.hair.sheets import FIRST_CARD, Sheet, parts_along, resampled, risen
+from agentface.view.hair.styles import thickness_of
 from agentface.view.hair.visible import Flags
 
 _CARDS, _ROWS = 36, 28
@@ -31,8 +31,6 @@ _SHORTEST, _LONGEST, _MOSTLY_LONG, _ALIKE = 0.84, 1.04, 0.6, 0.35
 """Parts of the whole length, and the exponent of chance between them; up to where along it all lie side by side."""
 _NUMBERS, _OWN = 24, 40.0
 """What the shader draws hairs by, few enough for its arithmetic."""
-_AT_PARTING, _RISE = 0.22, 0.050
-"""How high cards lie where they start, as a part of the hair's thickness, and the metres over which they rise."""
 _LOW = 0.62
 """How high the lowest lie, as a part of the hair's thickness."""
 _GOLDEN = 0.618
@@ -100,8 +98,7 @@ class _Course:
 
 def cards(model: HeadModel, look: HairLook, hull: Hull, rng: np.random.Generator) -> list[Sheet]:
     """The cards of both sides, each side's from the face to the nape."""
-    thickness = STYLES[look.style].thickness * look.volume * model.landmarks.eye_separation / REFERENCE_EYES
-    grown = []
+    thickness, grown = thickness_of(model, look), []
     for side in SIDES:
         course = _Course.drawn(draped(model, look, hull, 1.0 if side == SIDES[0] else -1.0), rng)
         layer: Doubles = np.mod(_GOLDEN * np.arange(_CARDS), 1.0)[:, None]
@@ -116,10 +113,9 @@ def _lying(
     """``(N, R, 3)`` m: the middle line of each card, off the ``hull`` and a little off its course."""
     t, along, middle = course.t, course.along, course.middle
     tucked = _TUCKED + (1.0 - _TUCKED) * smoothstep(0.0, _AT_FACE, course.place)[:, None]
-    risen = _AT_PARTING + (1.0 - _AT_PARTING) * np.sin(0.5 * np.pi * np.clip(along / _RISE, 0.0, 1.0))
     apart = _APART * layer * smoothstep(0.0, 0.015, along)
     sunk = (1.0 - _LOW) * (1.0 - layer) * smoothstep(0.02, 0.15, along)
-    height = thickness * tucked * (1.0 - sunk) * risen + apart
+    height = thickness * tucked * (1.0 - sunk) * risen(along) + apart
     height = height - _TURNED_IN * rng.random((_CARDS, 1)) ** 2 * smoothstep(0.75, 1.0, t) ** 1.5
     out = hull.outward(middle)
     across = unit_rows(np.cross(np.gradient(middle, axis=1), out))

@@ -60,12 +60,8 @@ def _fall(model: HeadModel, look: HairLook, widest: Doubles, sign: float, scale:
     turn = turn - np.radians(_FRAMING_DEG) * np.exp(-(away**2)) * smoothstep(0.05, 0.75, s)
     reach = reach + scale * (_BULGE * np.sin(np.pi * s) - _INWARD * smoothstep(0.55, 1.05, s) ** 1.5)
     lowest = look.length * float(model.landmarks["menton"][1])
-    drop = s * (lowest - widest[:, 1:2] - _centre_height(model))
+    drop = s * (lowest - widest[:, 1:2] - Hull.centre_of(model)[1])
     return np.stack([sign * reach * np.sin(turn), widest[:, 1:2] + drop, reach * np.cos(turn)], axis=2)
-
-
-def _centre_height(model: HeadModel) -> float:
-    return float(Hull.centre_of(model)[1])
 
 
 def parting_line(model: HeadModel, look: HairLook, hull: Hull) -> Doubles:

@@ -15,7 +15,7 @@ from agentface.view.hair.drape import draped
 from agentface.view.hair.groom import waves
 from agentface.view.hair.hull import Hull
 from agentface.view.hair.ribbons import unit_rows
-from agentface.view.hair.styles import REFERENCE_EYES, STYLES
+from agentface.view.hair.styles import thickness_of
 
 _EVERY, _ROWS = 3, 21
 """Which of the columns they have; points along each."""
@@ -73,8 +73,7 @@ class Sheet:
 
 def sheets(model: HeadModel, look: HairLook, hull: Hull, rng: np.random.Generator) -> list[Sheet]:
     """The sheets of hair that falls from a parting over the ``hull`` with its ears: what is seen between cards."""
-    style = STYLES[look.style]
-    thickness = style.thickness * look.volume * model.landmarks.eye_separation / REFERENCE_EYES
+    thickness = thickness_of(model, look)
     return [
         _sheet(hull, look, draped(model, look, hull, 1.0 if side == SIDES[0] else -1.0)[::_EVERY], thickness, rng)
         for side in SIDES
@@ -96,10 +95,9 @@ def _sheet(hull: Hull, look: HairLook, paths: Doubles, thickness: float, rng: np
     uneven = np.interp(across, np.arange(LOCKS + 1), rng.uniform(0.0, 1.0, LOCKS + 1))
     points, along = resampled(paths, _SHARE * (1.0 - _UNEVEN * uneven)[:, None] * t)
     tucked = _TUCKED + (1.0 - _TUCKED) * smoothstep(0.0, 1.5, across)[:, None]
-    risen = _AT_PARTING + (1.0 - _AT_PARTING) * np.sin(0.5 * np.pi * np.clip(along / _RISE, 0.0, 1.0))
     near_root = 1.0 - smoothstep(0.03, 0.12, along)
     layer = _LAYER + (_LAYER_AT_ROOT - _LAYER) * near_root
-    points = points + (thickness * layer * tucked * risen)[..., None] * hull.outward(points)
+    points = points + (thickness * layer * tucked * risen(along))[..., None] * hull.outward(points)
     points = hull.push_out(points, 0.001 + _LOWEST * smoothstep(0.0, 0.03, along))
     if look.curl:
         points = points + 0.003 * look.curl * waves(hull, points, along, uneven)
@@ -112,6 +110,11 @@ def parts_along(rows: int) -> Doubles:
     """``(rows,)``: points along hair, 0..1, more of them on the head than where it hangs."""
     even = np.linspace(0.0, 1.0, rows)
     return np.asarray(even * (1.0 - _ROOTWARD * (1.0 - even)))
+
+
+def risen(along: Doubles) -> Doubles:
+    """How high hair lies ``along`` m from where it starts, as a part of its thickness."""
+    return np.asarray(_AT_PARTING + (1.0 - _AT_PARTING) * np.sin(0.5 * np.pi * np.clip(along / _RISE, 0.0, 1.0)))
 
 
 def resampled(paths: Doubles, parts: Doubles) -> tuple[Doubles, Doubles]:

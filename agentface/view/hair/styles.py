@@ -75,6 +75,11 @@ PARTED = ("bob",)
 """Styles whose hair falls from a parting: drawn as sheets."""
 
 
+def thickness_of(model: HeadModel, look: HairLook) -> float:
+    """How thick hair lies on the head, metres."""
+    return STYLES[look.style].thickness * look.volume * model.landmarks.eye_separation / REFERENCE_EYES
+
+
 def parting_of(model: HeadModel, look: HairLook) -> float:
     """The parting's x in metres."""
     return look.parting * 0.6 * model.landmarks.eye_separation
