@@ -53,7 +53,7 @@ def jaw_shares(topology: HeadTopology, points: Doubles, guide: Doubles, shares: 
     correction = _spread(points, topology.skin.triangles, fixed, correction, shares.fade * unit)
     found = np.clip(guide + correction, 0.0, 1.0)
     from_chin = np.linalg.norm(points - points[topology.landmarks["pogonion"]["vertices"]].mean(0), axis=1)
-    found += falloff(from_chin / unit, *_BONE) * (1.0 - found)
+    found += np.where(fixed, 0.0, falloff(from_chin / unit, *_BONE)) * (1.0 - found)
     found = evened(found, topology.skin.triangles, _EVENINGS, _under_the_chin(topology, points, unit))
     # coarser than what the solver's rounding can change, so that every machine writes the same
     return np.round(0.5 * (found + found[topology.skin.mirror]) / _FINEST) * _FINEST
