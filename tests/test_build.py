@@ -28,7 +28,7 @@ def recipe(tmp_path, monkeypatch):
     monkeypatch.setenv("AGENTFACE_DATA", str(tmp_path / "data"))
     text = (face_folder("onyx") / "recipe.yaml").read_text()
     path = tmp_path / "sam.yaml"
-    path.write_text(text.replace("head/head-square: 0.4", "head/head-square: 0.1"))
+    path.write_text(text.replace("head/head-square: 0.1", "head/head-square: 0.4"))
     return path
 
 

@@ -73,14 +73,17 @@ def subdivided(model: HeadModel) -> ResampledModel:
 def thinned(model: HeadModel, count: int) -> ResampledModel:
     """``model`` without the vertices that matter least to its form, down to about ``count`` of them, symmetric.
 
-    Vertices of rings, those near the mouth's, and those of the median plane stay, and so do those without which a
-    triangle would turn over or degenerate; if these are more than ``count``, what comes back is the coarsest possible.
+    Vertices of rings, those near the mouth's, feature points and what lies in the median plane stay, and so does that
+    without which a triangle would turn over or degenerate; if this is more than ``count``, what comes back is the
+    coarsest possible.
     """
     from agentface.mesh.thin import Thinner
 
     vertices = model.vertices.astype(np.float64)
     free = vertices[:, 0] > _ON_MIDLINE
     free[_ringed(model)] = False
+    points = (row.vertex for row in model.feature_points.values() if row.mesh == "skin" and row.vertex is not None)
+    free[list(points)] = False
     if isinstance(model, ResampledModel):
         free[model.between] = False
     half = model.triangles[vertices[model.triangles, 0].mean(axis=1) > 0.0]

@@ -14,7 +14,8 @@ VIEWS: dict[str, tuple[float, float]] = {"front": (0.0, 2.0), "three-quarter": (
 """Name of a view: yaw towards the person's left and pitch upwards, in degrees."""
 
 _FIELD_OF_VIEW = np.radians(18.0)
-_HEAD_IN_PICTURE = 0.76
+_HEAD_IN_PICTURE, _DEPTH_IN_PICTURE = 0.76, 0.95
+"""Of the picture's height, the head from the chin to the hair; of a narrow one's width, the head from its front to its back."""
 _CROWN_OVER_MENTON = 1.06
 _NARROWEST = 0.80
 _HIGHEST = np.radians(85.0)
@@ -117,6 +118,8 @@ def named_view(model: HeadModel, name: str) -> Camera:
     chin = float(model.landmarks["menton"][1])
     # the neck below the chin balances the hair above the crown
     middle = 0.5 * (crown + chin) - 0.05 * (crown - chin)
-    distance = 0.5 * (crown - chin) / _HEAD_IN_PICTURE / np.tan(0.5 * _FIELD_OF_VIEW)
-    target = (0.0, middle, 0.5 * float(model.vertices[:, 2].min() + model.vertices[:, 2].max()) + 0.010)
+    back, front = float(model.vertices[:, 2].min()), float(model.vertices[:, 2].max())
+    half = 0.5 * max((crown - chin) / _HEAD_IN_PICTURE, (front - back) / (_NARROWEST * _DEPTH_IN_PICTURE))
+    distance = half / np.tan(0.5 * _FIELD_OF_VIEW)
+    target = (0.0, middle, 0.5 * (back + front) + 0.010)
     return Camera(_from(target, yaw, pitch, distance + 0.04), target)

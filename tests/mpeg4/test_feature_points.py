@@ -115,9 +115,8 @@ def test_points_stay_where_they_are_on_a_finer_and_a_coarser_mesh():
     for other in (subdivided(model), thinned(model, 5000)):
         points = feature_points(other)
         for number, point in feature_points(model).items():
-            if number in points:
-                assert np.array_equal(points[number].position, point.position)
-        assert set(absent_points(other)) <= {"11.5", "11.2", "11.3", "11.4", "11.6", *(f"10.{i}" for i in range(1, 11))}
+            assert np.array_equal(points[number].position, point.position)
+        assert absent_points(other).keys() == absent_points(model).keys()
 
 
 def test_every_fault_of_the_points_is_told(tmp_path):
