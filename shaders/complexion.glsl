@@ -5,9 +5,12 @@ uniform vec3 hair_colour;
 uniform float shine;
 
 const float HIDDEN = 0.875;   // of the skin, under dense hair
-const vec3 WRAP = vec3(0.27, 0.20, 0.16);  // how far light goes round the terminator, by channel
+const vec3 WRAP = vec3(0.23, 0.195, 0.175);  // how far light goes round the terminator, by channel
+const vec3 BLED = vec3(0.17, 0.125, 0.12);
 const vec3 RIM_WRAP = vec3(0.1);
-const vec3 SCATTERED = vec3(0.55, 0.38, 0.28);  // how far light goes through the skin, by channel
+const vec3 SCATTERED = vec3(0.48, 0.40, 0.34);  // how far light goes through the skin, by channel
+const float FILL_OPEN = 0.4, RIM_OPEN = -0.3;   // how far past what they graze lights without shadows arrive
+const float RIM_GLOSS = 0.6;     // of the sheen that light from behind makes, what fine hairs on the skin leave
 const float CHEEK_HIDES = 0.8;   // of the light from behind, what cheeks keep off the lips
 const vec3 INNER_LIP = vec3(0.78, 0.58, 0.60);
 const vec2 F0 = vec2(0.026, 0.036);  // of skin that is dry and moist
@@ -16,7 +19,7 @@ const vec2 F0 = vec2(0.026, 0.036);  // of skin that is dry and moist
 vec3 complexion_colour(vec4 tint, float mouth, float wet, float blotches) {
     vec3 c = skin_tone * mix(vec3(1.0), vec3(1.04, 0.94, 0.92), clamp(2.0 * blotches - 0.5, 0.0, 1.0));
     c *= mix(vec3(1.0), tint.x < 0.0 ? vec3(0.72, 0.74, 0.80) : vec3(1.03, 0.76, 0.74), abs(tint.x) * (0.8 * blotches + 0.6));
-    c *= mix(vec3(1.0), vec3(0.94, 0.89, 0.90), tint.y);
+    c *= mix(vec3(1.0), vec3(0.94, 0.92, 0.93), tint.y);
     c = mix(c, vec3(0.34, 0.10, 0.085), mouth);
     c = mix(c, mix(skin_tone, vec3(0.60, 0.30, 0.26), 0.45) * vec3(0.98, 0.86, 0.84), 0.8 * wet);
     return mix(c, hair_colour, HIDDEN * tint.w);
@@ -37,9 +40,9 @@ float lip_ridge(float red) {
     return 0.05 * smoothstep(0.0, 0.10, red) * smoothstep(0.55, 0.15, red);
 }
 
-// Light that misses the surface bleeds through it, red the most: powers of about 0.7, 0.95 and 1.05.
+// Light that misses the surface bleeds through it, red a little more.
 vec3 bled(float light) {
-    return vec3(mix(light, sqrt(light), 0.36), mix(light, sqrt(light), 0.05), light);
+    return mix(vec3(light), vec3(sqrt(light)), BLED);
 }
 
 // Cosines of a light for the channels: red follows the blurred normal, blue the sharp one.
@@ -64,6 +67,6 @@ float glint(vec3 n, vec3 l, vec3 view, float n_v, float rough, float f0) {
 }
 
 // How much of a light without a shadow of its own arrives: what lies round about hides what it cannot see itself.
-float unhidden(vec3 soft, vec3 l) {
-    return clamp(2.5 * dot(soft, l) + 0.4, 0.0, 1.0);
+float unhidden(vec3 soft, vec3 l, float opened) {
+    return clamp(2.5 * dot(soft, l) + opened, 0.0, 1.0);
 }

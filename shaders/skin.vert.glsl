@@ -46,8 +46,9 @@ void main() {
     vec3 gloss = hemisphere(reflect(-view, n)) * fresnel(f0, n_v) * 0.5;
     for (int i = 1; i < LIGHTS; i++) {
         vec3 l = light_direction[i].xyz;
-        light += light_colour[i].rgb * wrapped(scattered(n, soft, l), i == 1 ? wrap : RIM_WRAP);
-        gloss += light_colour[i].rgb * (unhidden(soft, l) * (i == 1 ? 1.0 : 1.0 - CHEEK_HIDES * lip) * glint(n, l, view, n_v, 0.9 * rough, f0));
+        vec3 arrives = light_colour[i].rgb * unhidden(soft, l, i == 1 ? FILL_OPEN : RIM_OPEN);
+        light += arrives * wrapped(scattered(n, soft, l), i == 1 ? wrap : RIM_WRAP);
+        gloss += arrives * ((i == 1 ? 1.0 : RIM_GLOSS * (1.0 - CHEEK_HIDES * lip)) * glint(n, l, view, n_v, 0.9 * rough, f0));
     }
     gloss *= 0.8 * shown;
 #ifdef TEXTURED
