@@ -12,10 +12,12 @@ const vec3 SCATTERED = vec3(0.48, 0.40, 0.34);  // how far light goes through th
 const float FILL_OPEN = 0.4, RIM_OPEN = -0.3;   // how far past what they graze lights without shadows arrive
 const float RIM_GLOSS = 0.6;     // of the sheen that light from behind makes, what fine hairs on the skin leave
 const float CHEEK_HIDES = 0.8;   // of the light from behind, what cheeks keep off the lips
+const vec3 LIP_SKIN = vec3(0.77, 0.56, 0.58), UPPER_LIP = vec3(0.81, 0.82, 0.82);
+const float UPPER_DULL = 0.55;   // of the gloss of lips, what the upper one lacks
 const vec3 INNER_LIP = vec3(0.78, 0.58, 0.60);
 const vec2 F0 = vec2(0.026, 0.036);  // of skin that is dry and moist
 
-// The skin's colour: tint is redness, eye socket, gloss, under the hair; blotches 0..1 is even at 0.5.
+// The skin's colour: tint is redness, darker skin, gloss, under the hair; blotches 0..1 is even at 0.5.
 vec3 complexion_colour(vec4 tint, float mouth, float wet, float blotches) {
     vec3 c = skin_tone * mix(vec3(1.0), vec3(1.04, 0.94, 0.92), clamp(2.0 * blotches - 0.5, 0.0, 1.0));
     c *= mix(vec3(1.0), tint.x < 0.0 ? vec3(0.72, 0.74, 0.80) : vec3(1.03, 0.76, 0.74), abs(tint.x) * (0.8 * blotches + 0.6));
@@ -25,14 +27,14 @@ vec3 complexion_colour(vec4 tint, float mouth, float wet, float blotches) {
     return mix(c, hair_colour, HIDDEN * tint.w);
 }
 
-// Lips are darker and redder to the inside, where at rest no light arrives.
-vec3 lip_colour(float ambient) {
-    return mix(skin_tone * vec3(0.81, 0.53, 0.56), lip_tint, 0.35) * mix(INNER_LIP, vec3(1.0), smoothstep(0.0, 1.0, ambient));
+// Lips are darker and redder to the inside, where at rest no light arrives; the upper one is browner.
+vec3 lip_colour(float ambient, float upper) {
+    return mix(skin_tone * LIP_SKIN, lip_tint, 0.35) * mix(vec3(1.0), UPPER_LIP, upper) * mix(INNER_LIP, vec3(1.0), smoothstep(0.0, 1.0, ambient));
 }
 
 // The red goes over into the skin unevenly; mottle -0.5..0.5.
 float lip_share(float red, float mottle) {
-    return smoothstep(0.20, 0.74, red + 0.28 * mottle);
+    return smoothstep(0.12, 0.86, red + 0.34 * mottle);
 }
 
 // How much paler the skin is along the lips' border.
@@ -51,7 +53,7 @@ vec3 scattered(vec3 sharp, vec3 soft, vec3 l) {
 }
 
 float roughness(float gloss, float lip, float moist) {
-    return mix(mix(mix(0.58, 0.47, gloss), 0.46, lip), 0.27, moist);
+    return mix(mix(mix(0.58, 0.47, gloss), 0.50, lip), 0.27, moist);
 }
 
 // How much of the shine is seen.

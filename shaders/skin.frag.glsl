@@ -18,7 +18,7 @@ out vec4 colour;
 uniform sampler3D pores;   // slopes of the skin's microrelief, its height
 
 const float FINENESS = 97.0;                // volumes a metre
-const vec3 LINED = vec3(1.7, 0.3, 1.0);     // lips have lines that run up and down
+const vec3 LINED = vec3(1.9, 0.5, 1.0);     // lips have lines that run up and down
 const float THROUGH = 0.4;   // how much of the relief the light in the skin shows
 const float SPARSENESS = 43.0, SPOT_FROM = 0.40, SPOT_TO = 0.10;   // volumes a metre, heights: where the deepest pits are, skin is darker
 const vec3 SPOT = vec3(0.92, 0.84, 0.81);

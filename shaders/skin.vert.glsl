@@ -39,7 +39,7 @@ void main() {
     float mouth = smoothstep(0.35, 0.9, material.y), wet = smoothstep(0.2, 0.95, material.z);
     float moist = max(mouth, wet), outer = lip_outer(lip, material.y), sky = sky_light(ambient, outer, mouth, wet, own_place), shown = sheen(ambient, mouth, complexion.w, max(0.5 * lip, wet));
     vec3 albedo = complexion_colour(complexion, mouth, wet, mix(0.5, coarse.g, 0.6)) * (1.0 + 0.19 * mottle + lip_ridge(material.x));
-    albedo = mix(albedo, lip_colour(ambient), 0.86 * lip * (1.0 - mouth));
+    albedo = mix(albedo, lip_colour(ambient, complexion.y), 0.86 * lip * (1.0 - mouth));
 
     vec3 view = normalize(towards), wrap = WRAP * (1.0 - 0.6 * mouth), light = hemisphere(soft), occlusion = bled(sky), key = light_direction[0].xyz;
     float n_v = max(dot(n, view), 0.02), rough = roughness(complexion.z, lip, moist), f0 = mix(F0.x, F0.y, max(lip, wet));
@@ -60,5 +60,5 @@ void main() {
     around = albedo * (light * occlusion + mouth * mouth_round(mouth_depth(own_place)) * light_colour[0].rgb + lip_glow(outer * (1.0 - mouth), ambient, lit * clamp(2.0 * soft_key, 0.0, 1.0))) + gloss;
     lit = mix(lit, 0.5 * sky, mouth);   // inside, no more than of the sky
     key_body = albedo * light_colour[0].rgb * bled(lit) * mix(vec3(1.0), occlusion, 0.75);
-    matter = vec4(lip, moist, rough, lit * shown);
+    matter = vec4(lip, moist, rough, lit * shown * (1.0 - UPPER_DULL * lip * complexion.y));
 }

@@ -29,7 +29,7 @@ void main() {
     float lip = lip_share(material.x, coarse.r - 0.5), mouth = smoothstep(0.35, 0.9, material.y), wet = smoothstep(0.2, 0.95, material.z);
     float moist = max(mouth, wet), outer = lip_outer(lip, material.y), sky = sky_light(ambient, outer, mouth, wet, own_place);
     vec3 albedo = complexion_colour(complexion, mouth, wet, coarse.g) * (0.905 + 0.19 * coarse.r + lip_ridge(material.x));
-    albedo = mix(albedo, lip_colour(ambient), 0.86 * lip * (1.0 - mouth));
+    albedo = mix(albedo, lip_colour(ambient, complexion.y), 0.86 * lip * (1.0 - mouth));
 
     vec3 occlusion = bled(sky), wrap = WRAP * (1.0 - 0.6 * mouth), view = normalize(eye_point.xyz - position);
     float lit = mix(1.0, lit_at_rest, smoothstep(-0.05, 0.30, dot(soft, light_direction[0].xyz)));

@@ -9,7 +9,7 @@ import numpy as np
 from agentface.conventions import Doubles, Floats, Indices
 from agentface.head.landmarks import Landmarks
 from agentface.head.model import HeadModel
-from agentface.head.ring_names import LidRing
+from agentface.head.ring_names import LidRing, LipRing
 from agentface.mesh.evening import evened
 from agentface.mesh.smoothstep import smoothstep
 
@@ -66,6 +66,8 @@ _CREASES = {
 _CREASE_ENDS = 0.6  # exponent: how soon the crease is deep, from the corners of the eye on
 _DARKER, _STEEPER = 0.25, 1.5
 """Shade s becomes s (0.25 + 1.5 s): the darkest places, nostrils above all, are seen as holes."""
+_LIP_MEETS_M = 0.0012
+"""Above and below where the lips touch, over which the one's colour goes over into the other's."""
 _BEARD_ACROSS = (0.0, 0.25, 0.45, 0.75, 1.1)
 _BEARD_TOP = (("subnasale", -0.02), ("subnasale", -0.06), ("mouth_corner_l", -0.02), ("mouth_corner_l", 0.05),
               ("mouth_corner_l", 0.5))  # fmt: skip
@@ -76,12 +78,16 @@ _BEARD_EDGE = 0.16
 
 
 def complexion(model: HeadModel, covered: Floats, stubble: float = 0.0) -> Floats:
-    """``(V, 4)`` 0..1: redness (below 0: a shaved beard), socket, gloss, and ``covered (V,)`` by hair."""
-    red, socket, gloss = (sum(spot.field(model) for spot in spots) for spots in (_RED, _SOCKET, _GLOSS))
+    """``(V, 4)`` 0..1: redness (below 0: a shaved beard), darker skin, gloss, and ``covered (V,)`` by hair.
+
+    Darker are the eye sockets and, of the lips, the upper one.
+    """
+    red, dark, gloss = (sum(spot.field(model) for spot in spots) for spots in (_RED, _SOCKET, _GLOSS))
+    dark = np.maximum(dark, _upper_lip(model))
     beard = stubble * _beard(model)
     red = (red + _RED_EARS * model.material[:, 3]) * (1.0 - beard) - beard
     bare = covered * (1.0 - model.material[:, 1])  # long hair hangs round the mouth's lining, not on it
-    tints = np.stack([red, socket, gloss, bare], axis=1)
+    tints = np.stack([red, dark, gloss, bare], axis=1)
     return np.asarray(np.clip(tints, [-1, 0, 0, 0], 1), np.float32)
 
 
@@ -123,6 +129,15 @@ def _lid_creases(model: HeadModel) -> Doubles:
             half = np.array(rings[number].upper)
             crease[half] = depth * np.sin(np.linspace(0.0, np.pi, len(half))).clip(0.0) ** _CREASE_ENDS
     return crease
+
+
+def _upper_lip(model: HeadModel) -> Doubles:
+    """``(V,)`` 0..1: the red of the upper lip."""
+    touching = model.vertices[np.array(model.lips.rings[LipRing.CONTACT].upper)]
+    touching = touching[touching[:, 0].argsort()]
+    x, y = model.vertices[:, 0], model.vertices[:, 1]
+    above = y - np.interp(x, touching[:, 0], touching[:, 1])
+    return np.asarray(smoothstep(-_LIP_MEETS_M, _LIP_MEETS_M, above) * np.clip(3.0 * model.material[:, 0], 0.0, 1.0))
 
 
 def _beard(model: HeadModel) -> Doubles:
