@@ -34,20 +34,20 @@ class _Spot(NamedTuple):
 
 
 _RED = (
-    _Spot(0.55, {"cheekbone_l": 0.45, "infraorbital_l": 0.35, "alare_l": 0.20}, -0.10, (0.42, 0.32, 0.6)),
+    _Spot(0.60, {"cheekbone_l": 0.45, "infraorbital_l": 0.35, "alare_l": 0.20}, -0.10, (0.42, 0.32, 0.6)),
     _Spot(0.75, {"nose_tip": 1.0}, 0.0, (0.24, 0.22, 0.4)),
     _Spot(0.45, {"alare_l": 1.0}, 0.0, (0.16, 0.16, 0.3)),
     _Spot(0.35, {"pogonion": 1.0}, 0.0, (0.32, 0.22, 0.4)),
     _Spot(0.25, {"mouth_corner_l": 1.0}, 0.0, (0.22, 0.20, 0.4)),
     _Spot(0.20, {"pupil_l": 1.0}, -0.16, (0.34, 0.10, 0.4)),
 )
-_RED_EARS = 0.75
+_RED_EARS = 0.5
 _SOCKET = (
     _Spot(0.55, {"pupil_l": 1.0}, 0.08, (0.42, 0.30, 0.4)),
     _Spot(0.40, {"pupil_l": 1.0}, -0.24, (0.30, 0.10, 0.4)),
 )
 _GLOSS = (
-    _Spot(0.60, {"brow_inner_l": 0.5, "glabella": 0.5}, 0.35, (0.55, 0.40, 0.8)),
+    _Spot(0.50, {"brow_inner_l": 0.5, "glabella": 0.5}, 0.35, (0.50, 0.40, 0.8)),
     _Spot(0.90, {"nasion": 0.5, "nose_tip": 0.5}, 0.0, (0.12, 0.50, 0.6)),
 )
 _CORNER = _Spot(1.0, {"mouth_corner_l": 1.0}, 0.0, (0.085, 0.075, 0.25))
