@@ -6,7 +6,7 @@ uniform float shine;
 
 const float HIDDEN = 0.875;   // of the skin, under dense hair
 const vec3 WRAP = vec3(0.23, 0.195, 0.175);  // how far light goes round the terminator, by channel
-const vec3 BLED = vec3(0.17, 0.125, 0.12);
+const vec3 BLED = vec3(0.15, 0.125, 0.12), BOUNCED = vec3(0.32, 0.17, 0.12);   // of the key light, of the surroundings'
 const vec3 RIM_WRAP = vec3(0.1);
 const vec3 SCATTERED = vec3(0.48, 0.40, 0.34);  // how far light goes through the skin, by channel
 const float FILL_OPEN = 0.4, RIM_OPEN = -0.2;   // how far past what they graze lights without shadows arrive
@@ -43,9 +43,9 @@ float lip_ridge(float red) {
     return 0.05 * smoothstep(0.0, 0.10, red) * smoothstep(0.55, 0.15, red);
 }
 
-// Light that misses the surface bleeds through it, red a little more.
-vec3 bled(float light) {
-    return mix(vec3(light), vec3(sqrt(light)), BLED);
+// Light that misses the surface bleeds through it and goes round in folds, red more; parts by channel.
+vec3 bled(float light, vec3 parts) {
+    return mix(vec3(light), vec3(sqrt(light)), parts);
 }
 
 // Cosines of a light for the channels: red follows the blurred normal, blue the sharp one.

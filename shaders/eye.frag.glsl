@@ -67,7 +67,7 @@ void main() {
     shine += hemisphere(mirror) * SKY_BRIGHT * smoothstep(-0.1, 0.5, mirror.y);
     vec3 c = mix(white * light * WHITE_LIT, iris * behind, on_iris) * shade;
     // the tears' edge along the lower lid
-    c += TEARS * (light_colour[0].rgb + light_colour[1].rgb) * exp(-pow((under - 0.035) / 0.020, 2.0)) * smoothstep(0.05, 0.25, from_corner) * smoothstep(0.05, 0.2, over);
-    c += shine * bright * smoothstep(0.0, 0.10, over) * mix(0.6, 1.0, on_iris) * smoothstep(-0.02, 0.06, under);
+    c += TEARS * (light_colour[0].rgb + light_colour[1].rgb) * exp(-pow((under - 0.035) / 0.020, 2.0)) * smoothstep(0.12, 0.40, from_corner) * smoothstep(0.05, 0.2, over);
+    c += shine * bright * smoothstep(0.02, 0.25, from_corner) * smoothstep(0.0, 0.10, over) * mix(0.6, 1.0, on_iris) * smoothstep(-0.02, 0.06, under);
     colour = vec4(finish(c), 1.0);
 }

@@ -41,7 +41,7 @@ void main() {
     vec3 albedo = complexion_colour(complexion, mouth, wet, mix(0.5, coarse.g, 0.6)) * (1.0 + 0.19 * mottle + lip_ridge(material.x));
     albedo = mix(albedo, lip_colour(ambient, complexion.y), 0.86 * lip * (1.0 - mouth));
 
-    vec3 view = normalize(towards), wrap = WRAP * (1.0 - 0.6 * mouth), light = hemisphere(soft), occlusion = bled(sky), key = light_direction[0].xyz;
+    vec3 view = normalize(towards), wrap = WRAP * (1.0 - 0.6 * mouth), light = hemisphere(soft), occlusion = bled(sky, BOUNCED), key = light_direction[0].xyz;
     float n_v = max(dot(n, view), 0.02), rough = roughness(complexion.z, lip, moist), f0 = mix(F0.x, F0.y, max(lip, wet));
     vec3 gloss = hemisphere(reflect(-view, n)) * fresnel(f0, n_v) * 0.5;
     for (int i = 1; i < LIGHTS; i++) {
@@ -59,6 +59,6 @@ void main() {
     float lit = mix(1.0, key_light(position, n), smoothstep(-0.05, 0.30, soft_key));
     around = albedo * (light * occlusion + mouth * mouth_round(mouth_depth(own_place)) * light_colour[0].rgb + lip_glow(outer * (1.0 - mouth), ambient, lit * clamp(2.0 * soft_key, 0.0, 1.0))) + gloss;
     lit = mix(lit, 0.5 * sky, mouth);   // inside, no more than of the sky
-    key_body = albedo * light_colour[0].rgb * bled(lit) * mix(vec3(1.0), occlusion, 0.75);
+    key_body = albedo * light_colour[0].rgb * bled(lit, BLED) * mix(vec3(1.0), occlusion, 0.75);
     matter = vec4(lip, moist, rough, lit * shown * (1.0 - UPPER_DULL * lip * complexion.y));
 }
