@@ -20,7 +20,7 @@ uniform sampler3D pores;   // slopes of the skin's microrelief, its height
 const float FINENESS = 131.0;                // volumes a metre
 const vec3 LINED = vec3(1.4, 0.37, 0.74);     // lips have lines that run up and down
 const float THROUGH = 0.4;   // how much of the relief the light in the skin shows
-const float SPARSENESS = 43.0, SPOT_FROM = 0.65, SPOT_TO = 0.17;   // volumes a metre, heights: where the deepest pits are, skin is darker
+const float SPARSENESS = 43.0, SPOT_FROM = 0.60, SPOT_TO = 0.12;   // volumes a metre, heights: where the deepest pits are, skin is darker
 const vec3 SPOT = vec3(0.92, 0.84, 0.81);
 const float RELIEF = 0.25, LIP_RELIEF = 0.32, PLATEAU = 0.92;
 const mat3 ASLANT = mat3(0.64, -0.60, 0.48, 0.48, 0.80, 0.36, -0.60, 0.0, 0.80);   // so that no row of the volume's pits lies along the face
