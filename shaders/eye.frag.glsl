@@ -47,7 +47,9 @@ void main() {
     // the lids keep light off, most the upper one with its lashes; the globe turns away to the corners
     float shade = mix(0.12, 1.0, smoothstep(0.0, 0.32, over)) * mix(0.66, 1.0, smoothstep(0.05, 0.60, over)) * mix(0.60, 1.0, smoothstep(-0.04, 0.20, under));
     shade *= mix(0.34, 1.0, max(smoothstep(-0.05, 0.50, from_corner), 0.55 * flesh));
-    white *= mix(vec3(1.0), FLUSHED, (1.0 - flesh) * smoothstep(0.55, 0.0, from_corner));
+    float turned_away = smoothstep(0.70, 0.98, abs(q.x)) * (1.0 - flesh);
+    shade *= 1.0 - 0.55 * turned_away;
+    white *= mix(vec3(1.0), FLUSHED, max((1.0 - flesh) * smoothstep(0.55, 0.0, from_corner), turned_away));
     vec3 ns = normalize(mix(n, mat3(head)[2], 0.15));
     n = normalize(n + flesh * (mat3(head) * vec3(0.9 * sign(q.x) * (0.12 - nasal) * 6.0, -5.0 * (q.y + 0.10), 0.0)));
     vec3 light = hemisphere(ns), behind = 0.75 * hemisphere(n), shine = vec3(0.0);

@@ -33,9 +33,10 @@ vec3 iris_colour(vec2 at) {
 // The white of the eye beside the iris.
 vec3 white_colour(vec2 local) {
     float side = length(local), away = smoothstep(iris_radius + 0.05, 0.92, side);
-    vec4 tangle = noise(vec3(local * vec2(0.40, 1.15), 0.3));
-    float veins = smoothstep(0.045, 0.0, abs(tangle.g - 0.5)) * smoothstep(0.42, 0.62, tangle.r) * away;
-    vec3 white = sclera * mix(vec3(1.0), BLOODSHOT, away * (0.75 + 0.8 * (tangle.r - 0.5)));
-    white *= mix(vec3(1.0), VEIN, 0.85 * veins);
+    vec4 tangle = noise(vec3(0.9 * local / max(side, 1e-4), 0.45 * side)), wave = noise(vec3(1.3 * local, 0.1));
+    float along = tangle.g + 0.22 * (wave.g - 0.5);   // veins come from the edge, winding
+    float veins = smoothstep(0.028, 0.0, abs(along - 0.5)) * smoothstep(0.36, 0.60, wave.r) * away;
+    vec3 white = sclera * mix(vec3(1.0), BLOODSHOT, away * (0.75 + 0.8 * (wave.r - 0.5)));
+    white *= mix(vec3(1.0), VEIN, 0.75 * veins);
     return white * mix(vec3(1.0), LIMBAL, smoothstep(iris_radius + 0.13, iris_radius - 0.02, side));
 }

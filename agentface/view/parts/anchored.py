@@ -12,7 +12,7 @@ from agentface.head.model import HeadModel
 from agentface.head.ring_names import LidRing
 from agentface.view.gl.drawn_mesh import DrawnMesh
 
-_LINING_DEPTHS = ((0.0, 1.0), (0.004, 0.98), (0.012, 0.90))
+_LINING_DEPTHS = ((0.0, 1.0), (0.004, 0.98), (0.012, 0.72))
 
 
 @dataclass(frozen=True, slots=True)
