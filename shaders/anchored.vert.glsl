@@ -8,19 +8,14 @@ in vec3 facing;
 in vec3 rest;
 in vec4 material;
 
-centroid out vec3 position, normal, rest_position;
+centroid out vec3 normal, rest_position;
 centroid out vec4 matter;
-centroid out vec2 within;
-centroid out vec4 reach;
 
 void main() {
     vec3 mean = 0.25 * (skin_position(anchors.x) + skin_position(anchors.y) + skin_position(anchors.z) + skin_position(anchors.w));
     vec4 placed = head * vec4(mean + offset, 1.0);
-    position = placed.xyz;
     normal = mat3(head) * facing;
     rest_position = rest;
     matter = material;
-    within = vec2(0.0);
-    reach = vec4(0.32, 0.25, 0.0, 1.0);
     gl_Position = view_projection * placed;
 }

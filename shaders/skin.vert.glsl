@@ -39,15 +39,16 @@ void main() {
     float mouth = smoothstep(0.35, 0.9, material.y), wet = smoothstep(0.2, 0.95, material.z);
     float moist = max(mouth, wet), outer = lip_outer(lip, material.y), sky = sky_light(ambient, outer, mouth, wet, own_place), shown = sheen(ambient, mouth, complexion.w, max(0.5 * lip, wet));
     vec3 albedo = complexion_colour(complexion, mouth, wet, mix(0.5, coarse.g, 0.6)) * (1.0 + 0.19 * mottle + lip_ridge(material.x));
-    albedo = mix(albedo, lip_colour(ambient), 0.86 * lip * (1.0 - mouth));
+    albedo = mix(albedo, lip_colour(ambient, complexion.y), 0.86 * lip * (1.0 - mouth));
 
-    vec3 view = normalize(towards), wrap = WRAP * (1.0 - 0.6 * mouth), light = hemisphere(soft), occlusion = bled(sky), key = light_direction[0].xyz;
+    vec3 view = normalize(towards), wrap = WRAP * (1.0 - 0.6 * mouth), light = hemisphere(soft), occlusion = bled(sky, BOUNCED), key = light_direction[0].xyz;
     float n_v = max(dot(n, view), 0.02), rough = roughness(complexion.z, lip, moist), f0 = mix(F0.x, F0.y, max(lip, wet));
     vec3 gloss = hemisphere(reflect(-view, n)) * fresnel(f0, n_v) * 0.5;
     for (int i = 1; i < LIGHTS; i++) {
         vec3 l = light_direction[i].xyz;
-        light += light_colour[i].rgb * wrapped(scattered(n, soft, l), i == 1 ? wrap : RIM_WRAP);
-        gloss += light_colour[i].rgb * (unhidden(soft, l) * (i == 1 ? 1.0 : 1.0 - CHEEK_HIDES * lip) * glint(n, l, view, n_v, 0.9 * rough, f0));
+        vec3 arrives = light_colour[i].rgb * unhidden(soft, l, i == 1 ? FILL_OPEN : RIM_OPEN);
+        light += arrives * wrapped(scattered(n, soft, l), i == 1 ? wrap : RIM_WRAP);
+        gloss += arrives * ((i == 1 ? 1.0 : RIM_GLOSS * (1.0 - CHEEK_HIDES * lip)) * glint(n, l, view, n_v, 0.9 * rough, f0));
     }
     gloss *= 0.8 * shown;
 #ifdef TEXTURED
@@ -58,6 +59,6 @@ void main() {
     float lit = mix(1.0, key_light(position, n), smoothstep(-0.05, 0.30, soft_key));
     around = albedo * (light * occlusion + mouth * mouth_round(mouth_depth(own_place)) * light_colour[0].rgb + lip_glow(outer * (1.0 - mouth), ambient, lit * clamp(2.0 * soft_key, 0.0, 1.0))) + gloss;
     lit = mix(lit, 0.5 * sky, mouth);   // inside, no more than of the sky
-    key_body = albedo * light_colour[0].rgb * bled(lit) * mix(vec3(1.0), occlusion, 0.75);
-    matter = vec4(lip, moist, rough, lit * shown);
+    key_body = albedo * light_colour[0].rgb * bled(lit, BLED) * mix(vec3(1.0), occlusion, 0.75);
+    matter = vec4(lip, moist, rough, lit * shown * (1.0 - UPPER_DULL * lip * complexion.y));
 }

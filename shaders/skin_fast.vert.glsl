@@ -29,17 +29,18 @@ void main() {
     float lip = lip_share(material.x, coarse.r - 0.5), mouth = smoothstep(0.35, 0.9, material.y), wet = smoothstep(0.2, 0.95, material.z);
     float moist = max(mouth, wet), outer = lip_outer(lip, material.y), sky = sky_light(ambient, outer, mouth, wet, own_place);
     vec3 albedo = complexion_colour(complexion, mouth, wet, coarse.g) * (0.905 + 0.19 * coarse.r + lip_ridge(material.x));
-    albedo = mix(albedo, lip_colour(ambient), 0.86 * lip * (1.0 - mouth));
+    albedo = mix(albedo, lip_colour(ambient, complexion.y), 0.86 * lip * (1.0 - mouth));
 
-    vec3 occlusion = bled(sky), wrap = WRAP * (1.0 - 0.6 * mouth), view = normalize(eye_point.xyz - position);
+    vec3 occlusion = bled(sky, BOUNCED), wrap = WRAP * (1.0 - 0.6 * mouth), view = normalize(eye_point.xyz - position);
     float lit = mix(1.0, lit_at_rest, smoothstep(-0.05, 0.30, dot(soft, light_direction[0].xyz)));
     lit = mix(lit, 0.5 * sky, mouth);   // inside, no more than of the sky
     vec3 diffuse = hemisphere(soft) * occlusion + mouth * mouth_round(mouth_depth(own_place)) * light_colour[0].rgb + lip_glow(outer * (1.0 - mouth), ambient, lit * clamp(2.0 * dot(soft, light_direction[0].xyz), 0.0, 1.0)), gloss = vec3(0.0);
     float n_v = max(dot(n, view), 0.02), rough = roughness(complexion.z, lip, moist), f0 = mix(F0.x, F0.y, max(lip, wet));
     for (int i = 0; i < LIGHTS; i++) {
+        float reach = unhidden(soft, light_direction[i].xyz, i == 1 ? FILL_OPEN : RIM_OPEN);
         vec3 l = light_direction[i].xyz, cosines = wrapped(scattered(n, soft, l), i < 2 ? wrap : RIM_WRAP);
-        diffuse += light_colour[i].rgb * cosines * (i == 0 ? bled(lit) * mix(vec3(1.0), occlusion, 0.75) : occlusion);
-        gloss += light_colour[i].rgb * ((i == 0 ? lit : unhidden(soft, l) * (i == 1 ? 1.0 : 1.0 - CHEEK_HIDES * lip)) * glint(n, l, view, n_v, 0.9 * rough, f0));
+        diffuse += light_colour[i].rgb * cosines * (i == 0 ? bled(lit, BLED) * mix(vec3(1.0), occlusion, 0.75) : reach * occlusion);
+        gloss += light_colour[i].rgb * ((i == 0 ? lit : reach * (i == 1 ? 1.0 : RIM_GLOSS * (1.0 - CHEEK_HIDES * lip))) * glint(n, l, view, n_v, 0.9 * rough, f0));
     }
     gloss += hemisphere(reflect(-view, n)) * fresnel(f0, n_v) * 0.5;
     float shown = sheen(ambient, mouth, complexion.w, max(0.5 * lip, wet));

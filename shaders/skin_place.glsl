@@ -4,7 +4,7 @@ in vec3 rest;          // at rest, metres
 in vec3 soft_normal;   // at rest, blurred
 in vec3 rest_normal;
 in vec4 material;      // lip, inside of the mouth, wet lid margin, ear
-in vec4 complexion;    // redness, eye socket, gloss, under the hair
+in vec4 complexion;    // redness, darker (sockets, upper lip), gloss, under the hair
 in float ambient;      // how much of the surroundings' light arrives
 
 const float MOUTH_BEHIND = 0.007;  // metres

@@ -270,7 +270,6 @@ class Renderer:
         self.context.enable(self.context.CULL_FACE)
         self._mouth.draw(geometry)
         self._shirt.draw(geometry.shoulders)
-        self._programs["lining"]["shaded"].value = 0.0
         for lining in self._linings:
             lining.draw()
         for eye in self._eyes:

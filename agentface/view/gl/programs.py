@@ -25,7 +25,7 @@ SHADERS = {
     "ribbon": ("ribbon", "ribbon"),
     "strand": ("strand", "strand"),
     "sheet": ("sheet", "sheet"),
-    "lining": ("anchored", "part"),
+    "lining": ("anchored", "lining"),
     "cap": ("cap", "cap"),
     "background": ("screen", "background"),
     "copy": ("screen", "copy"),

@@ -12,7 +12,7 @@ from agentface.head.model import HeadModel
 from agentface.head.ring_names import LidRing
 from agentface.view.gl.drawn_mesh import DrawnMesh
 
-_LINING_DEPTHS = ((0.0, 1.0), (0.004, 0.98), (0.012, 0.90))
+_LINING_DEPTHS = ((0.0, 1.0), (0.004, 0.98), (0.012, 0.72))
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,7 +64,8 @@ def eye_lining(model: HeadModel, side: str) -> Anchored:
     quads = [np.stack([[i, j, i + count], [j, j + count, i + count]]) + row * count for row in range(len(rows) - 1)]
     triangles = np.concatenate([quad.transpose(0, 2, 1).reshape(-1, 3) for quad in quads]).astype(np.int32)
     total = count * len(rows)
-    material = np.tile(np.array([0, 0.85, 0, 0], np.float32), (total, 1))
+    material = np.zeros((total, 4), np.float32)
+    material[:, 1] = np.repeat(1.0 - np.linspace(0.0, 1.0, len(rows)), count)
     facing = np.tile(np.array([0, 0, 1], np.float32), (total, 1))
     anchors = np.repeat(np.tile(loop, len(rows))[:, None], 4, axis=1)
     return Anchored(np.concatenate(rows).astype(np.float32), facing, triangles, anchors, material)

@@ -13,7 +13,7 @@ from agentface.head.ring_names import LidRing
 from agentface.mesh.normals import vertex_normals
 from agentface.view.gl.drawn_mesh import DrawnMesh
 
-IRIS_RADIUS = 0.405
+IRIS_RADIUS = 0.37
 """In radii of the eyeball."""
 
 

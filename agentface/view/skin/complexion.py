@@ -9,7 +9,7 @@ import numpy as np
 from agentface.conventions import Doubles, Floats, Indices
 from agentface.head.landmarks import Landmarks
 from agentface.head.model import HeadModel
-from agentface.head.ring_names import LidRing
+from agentface.head.ring_names import LidRing, LipRing
 from agentface.mesh.evening import evened
 from agentface.mesh.smoothstep import smoothstep
 
@@ -34,20 +34,20 @@ class _Spot(NamedTuple):
 
 
 _RED = (
-    _Spot(0.55, {"cheekbone_l": 0.45, "infraorbital_l": 0.35, "alare_l": 0.20}, -0.10, (0.42, 0.32, 0.6)),
+    _Spot(0.60, {"cheekbone_l": 0.45, "infraorbital_l": 0.35, "alare_l": 0.20}, -0.10, (0.42, 0.32, 0.6)),
     _Spot(0.75, {"nose_tip": 1.0}, 0.0, (0.24, 0.22, 0.4)),
     _Spot(0.45, {"alare_l": 1.0}, 0.0, (0.16, 0.16, 0.3)),
     _Spot(0.35, {"pogonion": 1.0}, 0.0, (0.32, 0.22, 0.4)),
     _Spot(0.25, {"mouth_corner_l": 1.0}, 0.0, (0.22, 0.20, 0.4)),
     _Spot(0.20, {"pupil_l": 1.0}, -0.16, (0.34, 0.10, 0.4)),
 )
-_RED_EARS = 0.75
+_RED_EARS = 0.5
 _SOCKET = (
     _Spot(0.55, {"pupil_l": 1.0}, 0.08, (0.42, 0.30, 0.4)),
     _Spot(0.40, {"pupil_l": 1.0}, -0.24, (0.30, 0.10, 0.4)),
 )
 _GLOSS = (
-    _Spot(0.60, {"brow_inner_l": 0.5, "glabella": 0.5}, 0.35, (0.55, 0.40, 0.8)),
+    _Spot(0.50, {"brow_inner_l": 0.5, "glabella": 0.5}, 0.35, (0.50, 0.40, 0.8)),
     _Spot(0.90, {"nasion": 0.5, "nose_tip": 0.5}, 0.0, (0.12, 0.50, 0.6)),
 )
 _CORNER = _Spot(1.0, {"mouth_corner_l": 1.0}, 0.0, (0.085, 0.075, 0.25))
@@ -66,6 +66,8 @@ _CREASES = {
 _CREASE_ENDS = 0.6  # exponent: how soon the crease is deep, from the corners of the eye on
 _DARKER, _STEEPER = 0.25, 1.5
 """Shade s becomes s (0.25 + 1.5 s): the darkest places, nostrils above all, are seen as holes."""
+_LIP_MEETS_M = 0.0012
+"""Above and below where the lips touch, over which the one's colour goes over into the other's."""
 _BEARD_ACROSS = (0.0, 0.25, 0.45, 0.75, 1.1)
 _BEARD_TOP = (("subnasale", -0.02), ("subnasale", -0.06), ("mouth_corner_l", -0.02), ("mouth_corner_l", 0.05),
               ("mouth_corner_l", 0.5))  # fmt: skip
@@ -76,12 +78,16 @@ _BEARD_EDGE = 0.16
 
 
 def complexion(model: HeadModel, covered: Floats, stubble: float = 0.0) -> Floats:
-    """``(V, 4)`` 0..1: redness (below 0: a shaved beard), socket, gloss, and ``covered (V,)`` by hair."""
-    red, socket, gloss = (sum(spot.field(model) for spot in spots) for spots in (_RED, _SOCKET, _GLOSS))
+    """``(V, 4)`` 0..1: redness (below 0: a shaved beard), darker skin, gloss, and ``covered (V,)`` by hair.
+
+    Darker are the eye sockets and, of the lips, the upper one.
+    """
+    red, dark, gloss = (sum(spot.field(model) for spot in spots) for spots in (_RED, _SOCKET, _GLOSS))
+    dark = np.maximum(dark, _upper_lip(model))
     beard = stubble * _beard(model)
     red = (red + _RED_EARS * model.material[:, 3]) * (1.0 - beard) - beard
     bare = covered * (1.0 - model.material[:, 1])  # long hair hangs round the mouth's lining, not on it
-    tints = np.stack([red, socket, gloss, bare], axis=1)
+    tints = np.stack([red, dark, gloss, bare], axis=1)
     return np.asarray(np.clip(tints, [-1, 0, 0, 0], 1), np.float32)
 
 
@@ -123,6 +129,15 @@ def _lid_creases(model: HeadModel) -> Doubles:
             half = np.array(rings[number].upper)
             crease[half] = depth * np.sin(np.linspace(0.0, np.pi, len(half))).clip(0.0) ** _CREASE_ENDS
     return crease
+
+
+def _upper_lip(model: HeadModel) -> Doubles:
+    """``(V,)`` 0..1: the red of the upper lip."""
+    touching = model.vertices[np.array(model.lips.rings[LipRing.CONTACT].upper)]
+    touching = touching[touching[:, 0].argsort()]
+    x, y = model.vertices[:, 0], model.vertices[:, 1]
+    above = y - np.interp(x, touching[:, 0], touching[:, 1])
+    return np.asarray(smoothstep(-_LIP_MEETS_M, _LIP_MEETS_M, above) * np.clip(3.0 * model.material[:, 0], 0.0, 1.0))
 
 
 def _beard(model: HeadModel) -> Doubles:

@@ -11,7 +11,7 @@ from agentface.conventions import Bytes, Doubles
 SIDE = 32
 _CELLS = 8  # plates of skin along each side
 _PIT, _PIT_DEPTH = 0.28, (0.2, 1.0)  # of a plate's width; parts of the deepest
-_FURROW = 0.30  # of a plate's width
+_FURROW, _FURROW_DEPTH = 0.30, (0.25, 0.75)  # of a plate's width; parts of the deepest pit
 
 
 def pore_volume(rng: np.random.Generator) -> Bytes:
@@ -32,7 +32,8 @@ def pore_volume(rng: np.random.Generator) -> Bytes:
         second = np.where(closer, nearest, np.minimum(second, distance))
         pit = np.where(closer, _by_texel(np.roll(depth, beside, (0, 1, 2))), pit)
         nearest = np.where(closer, distance, nearest)
-    height = 1.0 - np.exp(-(((second - nearest) / _FURROW) ** 2)) - pit * np.exp(-((nearest / _PIT) ** 2))
+    furrow = _FURROW_DEPTH[0] + (_FURROW_DEPTH[1] - _FURROW_DEPTH[0]) * pit  # where pores are wide, skin is coarse
+    height = 1.0 - furrow * np.exp(-(((second - nearest) / _FURROW) ** 2)) - pit * np.exp(-((nearest / _PIT) ** 2))
     height = _softened(height)
     slopes = np.stack([np.roll(height, -1, axis) - np.roll(height, 1, axis) for axis in range(3)], axis=-1)
     slopes /= np.abs(slopes).max()

@@ -126,7 +126,7 @@ export class Face3D extends Object3D {
       return [name, part(record, 'part', { moved: IDENTITY, shaded })];
     }));
     this.shirt = part(head.shirt, 'cloth', { moved: IDENTITY });
-    for (const lining of head.linings) part(lining, 'lining', { shaded: 0 });
+    for (const lining of head.linings) part(lining, 'lining', {});
     this.eyes = head.eyes.map((eye) => part(eye, 'eye', {
       turned: IDENTITY, centre: [0, 0, 0], radius: eye.radius, upper_lid: [0, 0, 0], lower_lid: [0, 0, 0], corners: [0, 0], dilation: 1,
     }));
