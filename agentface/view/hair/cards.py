@@ -25,7 +25,7 @@ _TO_THE_FRONT = 1.25
 """The exponent with which they gather at the face."""
 _JITTER = 0.5
 """Of the space between cards, by which they stand off their places."""
-_OVERLAP, _WIDTHS, _NARROWEST, _NARROWED = 2.1, (0.75, 1.3), 0.0022, 0.40
+_OVERLAP, _WIDTHS, _NARROWEST, _NARROWED = 1.95, (0.85, 1.2), 0.0022, 0.40
 """A card's width in spaces between cards, and how it differs; its least half width, metres; the part its end loses."""
 _SHORTEST, _LONGEST, _MOSTLY_LONG, _ALIKE = 0.88, 1.04, 0.6, 0.35
 """Parts of the whole length, and the exponent of chance between them; up to where along it all lie side by side."""
@@ -49,10 +49,14 @@ _WAVE, _WAVE_LENGTH, _WAVY = 0.0080, (0.115, 0.150), 0.09
 """Metres to and fro of the curliest hair, from wave to wave, and from the root to where they are whole."""
 _ROLL, _OUT_OF_STEP = 1.6, 0.35
 """Turns of the waves from the face to the nape, and by how much cards differ from that."""
-_DRIFT, _TWIST = 0.0040, 0.12
+_OUTWARD = 0.12
+"""How far waves go outward beside how far they go aside: more, and cards cut through each other."""
+_DRIFT, _TWIST = 0.0040, 0.08
 """Metres that ends leave their course, and how steeply cards lie across it: of most of them at most."""
-_LOWEST = 0.0058
+_LOWEST = 0.0028
 """Metres over the hull, which is smoother than the head: above the sheets below."""
+_EASED = 2, 2
+"""Cards, and points of each, by which what lifts one of them goes farther."""
 _TURNED_IN = 0.014
 """Metres that ends turn in at most, besides all of them."""
 _OVER_PARTING, _OVER_PARTING_REACH = 0.0022, 0.006
@@ -121,7 +125,8 @@ def _lying(
     tucked = _TUCKED + (1.0 - _TUCKED) * smoothstep(0.0, _AT_FACE, course.place)[:, None]
     apart = _APART * layer * smoothstep(0.0, 0.015, along)
     sunk = (1.0 - _LOW) * (1.0 - layer) * smoothstep(*_SINKING, along)
-    height = thickness * tucked * (1.0 - sunk) * risen(along) * volume(hull, middle) + apart
+    whole = thickness * tucked * risen(along) * volume(hull, middle)
+    height = whole * (1.0 - sunk) + apart
     height = height - _TURNED_IN * rng.random((_CARDS, 1)) ** 2 * smoothstep(0.75, 1.0, t) ** 1.5
     out = hull.outward(middle)
     across = unit_rows(np.cross(np.gradient(middle, axis=1), out))
@@ -137,11 +142,27 @@ def _lying(
     grown = look.curl * _WAVE * np.clip(along / _WAVY, 0.0, 1.0)
     drift = _DRIFT * np.where(course.wisps(), _WISP_DRIFT, 1.0) * rng.normal(size=_CARDS).clip(-1.3, 1.3)
     sway = grown * rng.uniform(0.4, 1.0, (_CARDS, 1)) * np.sin(turn) + drift[:, None] * t**1.5
-    height = height + 0.45 * grown * np.cos(turn)
+    height = height + _OUTWARD * grown * np.cos(turn)
     points = middle + sway[..., None] * across + height[..., None] * out
     rootward = _OVER_PARTING * rng.random((_CARDS, 1)) * np.exp(-along / _OVER_PARTING_REACH)
     points = points - rootward[..., None] * unit_rows(np.gradient(middle, axis=1))
-    return smoothed(hull.push_out(points, apart + 0.001 + _LOWEST * smoothstep(0.0, 0.03, along)), 3)
+    # where the lowest have to be lifted all are, so that they stay in their order
+    lowest = middle + (_LOW * whole)[..., None] * out
+    lifted = hull.push_out(lowest, 0.001 + _LOWEST * smoothstep(0.0, 0.03, along)) - lowest
+    lift = _eased(np.linalg.norm(lifted, axis=2))
+    return smoothed(points + lift[..., None] * hull.outward(points), 2)
+
+
+def _eased(lift: Doubles) -> Doubles:
+    """``(N, R)``: what lifts a card over an ear lifts its neighbours too, less and less."""
+    for axis, times in ((0, _EASED[0]), (1, _EASED[1])):
+        size = lift.shape[axis]
+        before, behind = np.maximum(np.arange(size) - 1, 0), np.minimum(np.arange(size) + 1, size - 1)
+        for _ in range(times):
+            lift = np.maximum(lift, np.maximum(lift.take(before, axis), lift.take(behind, axis)))
+        for _ in range(2 * times):
+            lift = 0.5 * lift + 0.25 * (lift.take(before, axis) + lift.take(behind, axis))
+    return lift
 
 
 def _woven(hull: Hull, course: _Course, points: Doubles, layer: Doubles, rng: np.random.Generator) -> list[Sheet]:

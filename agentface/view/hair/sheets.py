@@ -19,10 +19,10 @@ from agentface.view.hair.styles import thickness_of
 
 _EVERY, _ROWS = 3, 21
 """Which of the columns they have; points along each."""
-_LAYER_ON_TOP, _LAYER, _TOP, _SHARE = 0.66, 0.22, 2.5, 0.97
+_LAYER_ON_TOP, _LAYER, _TOP, _SHARE = 0.82, 0.22, 2.0, 0.97
 """Where between the skin and the outside of the hair the sheets lie, on the head and beside it; how soon it is on the
 head; how long they are beside the cards."""
-_LIGHT_AT_ROOT, _LIGHT = 0.70, 0.56
+_LIGHT_AT_ROOT, _LIGHT = 0.72, 0.62
 """How much light the cards let through to them."""
 _AT_PARTING, _RISE = 0.42, 0.055
 """How high hair lies where it starts, as a part of its thickness, and the metres over which it rises from there."""
