@@ -18,14 +18,14 @@ from agentface.view.hair.sheets import FIRST_CARD, Sheet, parts_along, resampled
 from agentface.view.hair.styles import thickness_of
 from agentface.view.hair.visible import Flags
 
-_CARDS, _ROWS = 36, 28
+_CARDS, _ROWS = 36, 25
 """On each side; points along each."""
 _ACROSS = np.array([-1.0, 1.0])
 _TO_THE_FRONT = 1.25
 """The exponent with which they gather at the face."""
 _JITTER = 0.5
 """Of the space between cards, by which they stand off their places."""
-_OVERLAP, _WIDTHS, _NARROWEST, _NARROWED = 1.95, (0.85, 1.2), 0.0022, 0.40
+_OVERLAP, _WIDTHS, _NARROWEST, _NARROWED = 1.85, (0.85, 1.2), 0.0022, 0.40
 """A card's width in spaces between cards, and how it differs; its least half width, metres; the part its end loses."""
 _SHORTEST, _LONGEST, _MOSTLY_LONG, _ALIKE = 0.88, 1.04, 0.6, 0.35
 """Parts of the whole length, and the exponent of chance between them; up to where along it all lie side by side."""
@@ -53,7 +53,7 @@ _OUTWARD = 0.12
 """How far waves go outward beside how far they go aside: more, and cards cut through each other."""
 _DRIFT, _TWIST = 0.0040, 0.08
 """Metres that ends leave their course, and how steeply cards lie across it: of most of them at most."""
-_LOWEST = 0.0028
+_LOWEST = 0.0036
 """Metres over the hull, which is smoother than the head: above the sheets below."""
 _EASED = 2, 2
 """Cards, and points of each, by which what lifts one of them goes farther."""

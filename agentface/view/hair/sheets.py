@@ -40,7 +40,7 @@ _WIDTHS = 0.3, 1.7
 """Of the spaces between columns, in locks, as parts of their mean."""
 _UNEVEN = 0.05
 """The part by which the lengths of locks differ."""
-_LOWEST = 0.0025
+_LOWEST = 0.0010
 """Metres over the hull, which is smoother than the head."""
 _TUCKED = 0.2
 """How high the front edge lies, as a part of the hair's thickness."""
