@@ -10,7 +10,7 @@ in vec3 along_rest;
 in vec3 facing;
 in vec4 sheet;         // across in locks, along 0..1, light that the hair above lets through, a number of its own
 
-centroid out vec3 dull, bright;  // between and on the highlights
+centroid out vec3 dull, bright;  // two hairs side by side, whose scales lie at different angles
 centroid out vec4 strand;        // as sheet
 centroid out vec3 drift;         // how hairs wander, gaps deepen and light changes
 out vec2 spread;                 // the first two of strand
@@ -18,6 +18,8 @@ out vec2 spread;                 // the first two of strand
 uniform vec3 hair_colour;
 uniform float gloss;
 
+const float JITTER = 0.11;    // by how much a strand's highlights are shifted to and fro
+const vec2 SHINES = vec2(0.65, 1.85);  // how much of the highlights dull and bright hairs have
 const float TURNED = -0.35;   // cosine; at its outline hair is still seen from outside
 
 void main() {
@@ -25,10 +27,11 @@ void main() {
     vec3 view = normalize(eye_point.xyz - placed);
     n = dot(n, view) < TURNED ? -n : n;
     float own = fract(sheet.w * 3.7);
-    vec3 base = hair_colour * mix(0.9, 1.8, smoothstep(0.15, 1.0, sheet.y)) * (0.85 + 0.3 * fract(sheet.w * 5.3));
-    HairLight light = hair_lights(base, along, n, view, gloss, 0.30 * (own - 0.5), sheet.z);
-    dull = finish(light.body + 0.45 * light.shine);
-    bright = finish(light.body + 2.6 * light.shine);
+    vec3 base = hair_colour * mix(0.95, 1.7, smoothstep(0.1, 1.0, sheet.y)) * (0.94 + 0.12 * fract(sheet.w * 5.3));
+    float shift = 0.12 * (own - 0.5);
+    HairLight back = hair_lights(base, along, n, view, gloss, shift - JITTER, sheet.z), ahead = hair_lights(base, along, n, view, gloss, shift + JITTER, sheet.z);
+    dull = finish(back.body + SHINES.x * back.shine);
+    bright = finish(ahead.body + SHINES.y * ahead.shine);
     strand = sheet;
     spread = sheet.xy;
     drift = noise(vec3(0.23 * sheet.x, 0.9 * sheet.y, 0.31 * sheet.w)).rgb - 0.5;

@@ -42,7 +42,11 @@ class EyesLook(Table):
 
 
 class HairLook(Table):
-    """Hair of the head, brows and lashes; ``hairline`` is its height as a part of the landmark hairline_middle's."""
+    """Hair of the head, brows and lashes.
+
+    ``hairline`` is its height as a part of the landmark hairline_middle's, ``brow_arch`` how much of the arch of the
+    landmarks brows have.
+    """
 
     style: Literal["none", "cropped", "swept", "bob", "bun"]
     colour: _Colour
@@ -54,6 +58,7 @@ class HairLook(Table):
     curl: _Fraction
     brow_colour: _Colour
     brow_density: Annotated[float, Field(ge=0, le=2)]
+    brow_arch: _Fraction = 1.0
     lash_length_mm: Annotated[float, Field(ge=0, le=14)]
 
 

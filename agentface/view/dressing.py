@@ -79,7 +79,7 @@ def dressed_skin(model: HeadModel, look: Look, grown: GrownHair | None) -> dict[
 
 def _covered(model: HeadModel, look: HairLook) -> Floats:
     """``(V,)`` 0..1: how much of the skin's colour is that of the hair on it, brows among it."""
-    tint = _BROW_TINT * look.brow_density * BrowLine(model).density(model.vertices)
+    tint = _BROW_TINT * look.brow_density * BrowLine(model, look.brow_arch).density(model.vertices)
     if look.style != "none":
         tint = np.maximum(tint, hidden(model, Hairline(model, look.hairline), look))
     return np.asarray(np.clip(tint, 0, 1), np.float32)

@@ -11,10 +11,18 @@ from agentface.head.ring_names import LidRing
 from agentface.view.hair.ribbons import Hairs, Roots, roots_along, roots_in_front, unit_rows
 
 _BROW_HAIRS = 520
-_UPPER_LASHES, _LOWER_LASHES = 90, 42
+_PALEST = 1.2
+"""By how much of the colour the few palest hairs of brows are lighter."""
+_UPPER_LASHES, _LOWER_LASHES = 90, 46
+_FLAT_RISE, _TAPERED, _INWARD = 0.5, 0.62, 1.12
+"""How high a straight brow lies between the ends and the middle of the arch; the part of its height that its tail
+loses; the exponent with which hairs gather at the inner end."""
+_BROW_OPACITY = 0.75, 0.95
+_STRAY, _STRAYING = 0.24, 1.5
+"""The part of the hairs that stand anywhere at the inner end, none at the tail; half heights up to which they do."""
 _LASH_LINE, _GATHERED = 0.030, 0.9
 """Metres of lid that lashes stand on; how far the tips of a bundle come together."""
-_UPPER_UNEQUAL, _LOWER_UNEQUAL = (0.55, 1.15), (0.85, 1.15)
+_UPPER_UNEQUAL, _LOWER_UNEQUAL = (0.55, 1.15), (0.92, 1.12)
 """How long the bundles of the upper and lower lashes are."""
 _REFERENCE_EYES = 0.0525
 """The distance between the pupils, metres, that the sizes below are meant for."""
@@ -23,22 +31,27 @@ _REFERENCE_EYES = 0.0525
 class BrowLine:
     """The left eyebrow's middle line: x and y in metres over ``s``, 0 at the inner end and 1 at the tail."""
 
-    def __init__(self, model: HeadModel) -> None:
-        at = model.landmarks
+    def __init__(self, model: HeadModel, arch: float = 1.0) -> None:
+        """``arch`` 0..1: how much of the landmarks' arch it has."""
+        at, self._arch = model.landmarks, arch
         self.scale = at.eye_separation / _REFERENCE_EYES
         self.inner, self.outer = (
-            float(at["brow_inner_l"][0]) - 0.002 * self.scale,
-            float(at["brow_outer_l"][0]) + 0.004 * self.scale,
+            float(at["brow_inner_l"][0]) - 0.0015 * self.scale,
+            float(at["brow_outer_l"][0]) + 0.001 * self.scale,
         )
         points = np.array([at[f"brow_{name}_l"] for name in ("inner", "middle", "outer")], np.float64)
         self.curve = np.polyfit(points[:, 0], points[:, 1], 2)
+        # a flatter one is as high on the whole
+        ends = np.polyfit(points[[0, 2], 0], points[[0, 2], 1], 1)
+        level = np.polyadd(ends, [_FLAT_RISE * float(points[1, 1] - np.polyval(ends, points[1, 0]))])
+        self.curve = np.polyadd(arch * self.curve, (1.0 - arch) * level)
 
     def place(self, s: Doubles) -> tuple[Doubles, Doubles]:
         """The middle line's x and y."""
         x = self.inner + (self.outer - self.inner) * s
         # the arch is highest two thirds out, and the tail comes down to a point
-        return x, np.polyval(self.curve, x) - 0.0012 * self.scale * (1 - s) ** 2 + 0.0008 * self.scale * np.sin(
-            np.pi * s
+        return x, np.polyval(self.curve, x) - self.scale * (
+            0.0012 * (1 - s) ** 2 - 0.0008 * self._arch * np.sin(np.pi * s)
         )
 
     def direction(self, s: Doubles) -> Doubles:
@@ -48,7 +61,7 @@ class BrowLine:
 
     def half_height(self, s: Doubles) -> Doubles:
         """Half of the brow's height, metres."""
-        return np.asarray(0.0043 * self.scale * (1 - 0.68 * s**1.4) * (0.6 + 0.4 * np.minimum(6 * s, 1)))
+        return np.asarray(0.0043 * self.scale * (1 - _TAPERED * s**1.5) * (0.6 + 0.4 * np.minimum(6 * s, 1)))
 
     def density(self, vertices: Floats) -> Floats:
         """``(V,)`` 0..1: how much brow covers each vertex, for the tint of the skin below."""
@@ -61,16 +74,20 @@ class BrowLine:
 
 def brow_hairs(model: HeadModel, normals: Floats, look: HairLook, rng: np.random.Generator) -> Hairs:
     """Both eyebrows."""
-    line = BrowLine(model)
+    line = BrowLine(model, look.brow_arch)
     count = round(_BROW_HAIRS * look.brow_density)
     near = _brow_triangles(model)
     places, flats = [], []
     for side in (1.0, -1.0):
-        s, off = rng.random(count) ** 0.9, rng.normal(0, 0.45, count).clip(-1, 1)
+        s, off = rng.random(count) ** _INWARD, rng.normal(0, 0.45, count).clip(-1, 1)
+        stray = rng.random(count) < _STRAY * (1 - s)
+        off = np.where(stray, rng.uniform(-_STRAYING, _STRAYING, count), off)
         x, y = line.place(s)
         places.append(np.stack([side * x, y + off * line.half_height(s)], axis=1))
         # hairs stand up at the inner end and lie along the brow farther out, leaning to its middle line
-        lean = np.radians(30 * np.exp(-6 * s) + 14 * (1 - s) - 22 * off * (s > 0.2) + rng.normal(0, 5, count))
+        lean = np.radians(
+            30 * np.exp(-6 * s) + 14 * (1 - s) - 22 * off.clip(-1, 1) * (s > 0.2) + rng.normal(0, 8, count)
+        )
         length = (
             0.0064 * line.scale * (0.6 + 0.5 * rng.random(count)) * (0.7 + 0.3 * np.minimum(5 * s, 1)) * (1 - 0.25 * s)
         )
@@ -87,7 +104,9 @@ def brow_hairs(model: HeadModel, normals: Floats, look: HairLook, rng: np.random
     lift = np.array([0.0007, 0.0005]) * line.scale * (0.5 + rng.random((2 * count, 1)))
     curves = flat[..., :1] * x[:, None] + flat[..., 1:] * up[:, None] + lift[..., None] * n[:, None]
     radii = (0.00011 + 0.00008 * rng.random(2 * count)) * line.scale
-    paint = np.column_stack([_shades(look.brow_colour, 0.4 * look.grey, 2 * count, rng), np.full(2 * count, 0.85)])
+    paint = np.column_stack(
+        [_shades(look.brow_colour, 0.4 * look.grey, 2 * count, rng), rng.uniform(*_BROW_OPACITY, 2 * count)]
+    )
     return Hairs.grown(roots, (model.vertices, normals), curves[:, 0], curves[:, 1], radii, paint)
 
 
@@ -108,7 +127,7 @@ def _lash_row(
     ring = model.eyelids.rings[side][LidRing.LASHES]
     half = np.array(ring.upper if upper else ring.lower, np.int32)
     half = half if side == "l" else half[::-1]  # from the temple inward on both sides
-    outward = np.linspace(0.95, 0.10, count) + rng.normal(0, 0.006, count)  # 1 at the temple
+    outward = np.linspace(0.95, 0.10, count) + rng.normal(0, 0.006 if upper else 0.016, count)  # 1 at the temple
     roots = roots_along(half, model.vertices, np.clip(1 - outward, 0.0, 1.0))
     lengths = (length * (0.45 + 0.65 * outward) * (0.7 + 0.5 * rng.random(count)))[:, None]
     # lashes stick together by twos to sixes, and are unequal
@@ -116,14 +135,14 @@ def _lash_row(
     middle = (np.bincount(bundle, outward) / np.maximum(np.bincount(bundle), 1))[bundle]
     lengths = lengths * rng.uniform(*(_UPPER_UNEQUAL if upper else _LOWER_UNEQUAL), count)[bundle][:, None]
     together = _GATHERED * _LASH_LINE * (middle - outward)[:, None] / lengths
-    fan = (outward - 0.30) * 1.5 + rng.normal(0, 0.16, count)[bundle] + rng.normal(0, 0.05, count)
+    fan = (outward - 0.30) * 1.5 + rng.normal(0, 0.16, count)[bundle] + rng.normal(0, 0.05 if upper else 0.10, count)
     fan = (fan[:, None] + together) * (1.0 if side == "l" else -1.0)
     rise = (-0.20, 0.46) if upper else (-0.10, -0.35)
     reach = (0.55, 0.72) if upper else (0.60, 1.05)
     bends = lengths * np.concatenate([0.25 * fan, np.full_like(fan, rise[0]), np.full_like(fan, reach[0])], axis=1)
     tips = lengths * np.concatenate([0.75 * fan, np.full_like(fan, rise[1]), np.full_like(fan, reach[1])], axis=1)
-    radii = (0.00022 if upper else 0.00010) * (0.8 + 0.4 * rng.random(count))
-    paint = np.tile([0.008, 0.006, 0.005, 0.9 if upper else 0.65], (count, 1))
+    radii = (0.00022 if upper else 0.00007) * (0.8 + 0.4 * rng.random(count))
+    paint = np.tile([0.008, 0.006, 0.005, 0.9 if upper else 0.55], (count, 1))
     return Hairs.grown(roots, (model.vertices, normals), bends, tips, radii, paint)
 
 
@@ -147,7 +166,7 @@ def _turned(directions: Doubles, angles: Doubles) -> Doubles:
 
 def _shades(colour: list[float], grey: float, count: int, rng: np.random.Generator) -> Doubles:
     """A colour with each hair a little lighter or darker, the part ``grey`` of them grey."""
-    shades = np.asarray(colour) * (0.7 + 0.7 * rng.random((count, 1)))
+    shades = np.asarray(colour) * (0.7 + 0.5 * rng.random((count, 1)) + _PALEST * rng.random((count, 1)) ** 5)
     return np.where(rng.random((count, 1)) < grey, 0.07 + 0.05 * rng.random((count, 1)), shades)
 
 

@@ -14,45 +14,55 @@ from agentface.view.hair.drape import draped
 from agentface.view.hair.groom import smoothed
 from agentface.view.hair.hull import Hull
 from agentface.view.hair.ribbons import unit_rows
-from agentface.view.hair.sheets import FIRST_CARD, Sheet, parts_along, resampled, risen
+from agentface.view.hair.sheets import FIRST_CARD, Sheet, parts_along, resampled, risen, volume
 from agentface.view.hair.styles import thickness_of
 from agentface.view.hair.visible import Flags
 
-_CARDS, _ROWS = 36, 28
+_CARDS, _ROWS = 36, 25
 """On each side; points along each."""
 _ACROSS = np.array([-1.0, 1.0])
 _TO_THE_FRONT = 1.25
 """The exponent with which they gather at the face."""
-_JITTER = 0.7
+_JITTER = 0.5
 """Of the space between cards, by which they stand off their places."""
-_OVERLAP, _WIDTHS, _NARROWEST, _NARROWED = 1.7, (0.7, 1.35), 0.0022, 0.55
+_OVERLAP, _WIDTHS, _NARROWEST, _NARROWED = 1.85, (0.85, 1.2), 0.0022, 0.40
 """A card's width in spaces between cards, and how it differs; its least half width, metres; the part its end loses."""
-_SHORTEST, _LONGEST, _MOSTLY_LONG, _ALIKE = 0.84, 1.04, 0.6, 0.35
+_SHORTEST, _LONGEST, _MOSTLY_LONG, _ALIKE = 0.88, 1.04, 0.6, 0.35
 """Parts of the whole length, and the exponent of chance between them; up to where along it all lie side by side."""
 _NUMBERS, _OWN = 24, 40.0
 """What the shader draws hairs by, few enough for its arithmetic."""
-_LOW = 0.62
+_LOW = 0.70
 """How high the lowest lie, as a part of the hair's thickness."""
 _GOLDEN = 0.618
 """Turns from the height of a card to the next one's, so that neighbours lie apart."""
-_APART = 0.0025
+_SINKING = 0.05, 0.22
+"""Metres from the root between which they come to do so: the outline of the crown is one."""
+_APART = 0.0028
 """Metres by which the highest lie over the lowest from the root on, so that none cut through others."""
-_WISPS, _WISP_WIDTH, _WISP_DRIFT = 4, 0.4, 1.2
+_WISPS, _WISP_WIDTH, _WISP_DRIFT = 4, 0.7, 1.2
 """Every how many cards at the face one is a wisp; how wide, and how far off its way, beside the others."""
-_TUCKED = 0.45
+_TUCKED = 0.58
 """How high the first of them lies, as a part of the hair's thickness."""
 _AT_FACE = 0.30
 """The part of the columns that are at the face."""
-_WAVE, _WAVE_LENGTH, _WAVY = 0.0060, (0.10, 0.17), 0.09
+_WAVE, _WAVE_LENGTH, _WAVY = 0.0080, (0.115, 0.150), 0.09
 """Metres to and fro of the curliest hair, from wave to wave, and from the root to where they are whole."""
-_DRIFT, _TWIST = 0.0040, 0.20
+_ROLL, _OUT_OF_STEP = 1.6, 0.35
+"""Turns of the waves from the face to the nape, and by how much cards differ from that."""
+_OUTWARD = 0.12
+"""How far waves go outward beside how far they go aside: more, and cards cut through each other."""
+_DRIFT, _TWIST = 0.0040, 0.08
 """Metres that ends leave their course, and how steeply cards lie across it: of most of them at most."""
-_LOWEST = 0.0075
+_LOWEST = 0.0036
 """Metres over the hull, which is smoother than the head: above the sheets below."""
+_EASED = 2, 2
+"""Cards, and points of each, by which what lifts one of them goes farther."""
 _TURNED_IN = 0.014
 """Metres that ends turn in at most, besides all of them."""
 _OVER_PARTING, _OVER_PARTING_REACH = 0.0022, 0.006
 """Metres by which roots lie over the parting at most, and along the hair in which that falls to a third."""
+_EVEN = 6
+"""Smoothings of the way across them, so that none folds over."""
 _ROOT_LIGHT = 0.60
 """At the root, as a part of that at the end."""
 
@@ -114,20 +124,45 @@ def _lying(
     t, along, middle = course.t, course.along, course.middle
     tucked = _TUCKED + (1.0 - _TUCKED) * smoothstep(0.0, _AT_FACE, course.place)[:, None]
     apart = _APART * layer * smoothstep(0.0, 0.015, along)
-    sunk = (1.0 - _LOW) * (1.0 - layer) * smoothstep(0.02, 0.15, along)
-    height = thickness * tucked * (1.0 - sunk) * risen(along) + apart
+    sunk = (1.0 - _LOW) * (1.0 - layer) * smoothstep(*_SINKING, along)
+    whole = thickness * tucked * risen(along) * volume(hull, middle)
+    height = whole * (1.0 - sunk) + apart
     height = height - _TURNED_IN * rng.random((_CARDS, 1)) ** 2 * smoothstep(0.75, 1.0, t) ** 1.5
     out = hull.outward(middle)
     across = unit_rows(np.cross(np.gradient(middle, axis=1), out))
-    turn = 2.0 * np.pi * (along / rng.uniform(*_WAVE_LENGTH, (_CARDS, 1)) + rng.random((_CARDS, 1)))
+    turn = (
+        2.0
+        * np.pi
+        * (
+            along / rng.uniform(*_WAVE_LENGTH, (_CARDS, 1))
+            + _ROLL * course.place[:, None]
+            + _OUT_OF_STEP * rng.random((_CARDS, 1))
+        )
+    )
     grown = look.curl * _WAVE * np.clip(along / _WAVY, 0.0, 1.0)
     drift = _DRIFT * np.where(course.wisps(), _WISP_DRIFT, 1.0) * rng.normal(size=_CARDS).clip(-1.3, 1.3)
     sway = grown * rng.uniform(0.4, 1.0, (_CARDS, 1)) * np.sin(turn) + drift[:, None] * t**1.5
-    height = height + 0.35 * grown * np.cos(turn)
+    height = height + _OUTWARD * grown * np.cos(turn)
     points = middle + sway[..., None] * across + height[..., None] * out
     rootward = _OVER_PARTING * rng.random((_CARDS, 1)) * np.exp(-along / _OVER_PARTING_REACH)
     points = points - rootward[..., None] * unit_rows(np.gradient(middle, axis=1))
-    return smoothed(hull.push_out(points, apart + 0.002 + _LOWEST * smoothstep(0.0, 0.03, along)), 2)
+    # where the lowest have to be lifted all are, so that they stay in their order
+    lowest = middle + (_LOW * whole)[..., None] * out
+    lifted = hull.push_out(lowest, 0.001 + _LOWEST * smoothstep(0.0, 0.03, along)) - lowest
+    lift = _eased(np.linalg.norm(lifted, axis=2))
+    return smoothed(points + lift[..., None] * hull.outward(points), 2)
+
+
+def _eased(lift: Doubles) -> Doubles:
+    """``(N, R)``: what lifts a card over an ear lifts its neighbours too, less and less."""
+    for axis, times in ((0, _EASED[0]), (1, _EASED[1])):
+        size = lift.shape[axis]
+        before, behind = np.maximum(np.arange(size) - 1, 0), np.minimum(np.arange(size) + 1, size - 1)
+        for _ in range(times):
+            lift = np.maximum(lift, np.maximum(lift.take(before, axis), lift.take(behind, axis)))
+        for _ in range(2 * times):
+            lift = 0.5 * lift + 0.25 * (lift.take(before, axis) + lift.take(behind, axis))
+    return lift
 
 
 def _woven(hull: Hull, course: _Course, points: Doubles, layer: Doubles, rng: np.random.Generator) -> list[Sheet]:
@@ -138,6 +173,7 @@ def _woven(hull: Hull, course: _Course, points: Doubles, layer: Doubles, rng: np
     half *= np.where(course.wisps(), _WISP_WIDTH, 1.0)[:, None]
     across = unit_rows(np.cross(np.gradient(points, axis=1), out))
     across *= np.sign((across * course.aside).sum(2, keepdims=True))
+    across = unit_rows(smoothed(across, _EVEN))
     at_root = (1.0 - smoothstep(0.0, 0.25, t))[:, None]
     across = unit_rows(at_root * unit_rows(course.aside) + (1.0 - at_root) * across)
     edges = points[:, None] + _ACROSS[:, None, None] * (half[..., None] * across)[:, None]
@@ -145,7 +181,7 @@ def _woven(hull: Hull, course: _Course, points: Doubles, layer: Doubles, rng: np
     twist = half * _TWIST * rng.normal(size=(_CARDS, 1)) * smoothstep(0.25, 0.7, t)
     rise = hull.height(points)[:, None] - hull.height(edges) + _ACROSS[:, None] * twist[:, None]
     edges = edges + rise[..., None] * hull.outward(edges)
-    light = (0.78 + 0.22 * layer) * (_ROOT_LIGHT + (1.0 - _ROOT_LIGHT) * smoothstep(0.0, 0.30, t))
+    light = (0.86 + 0.14 * layer) * (_ROOT_LIGHT + (1.0 - _ROOT_LIGHT) * smoothstep(0.0, 0.30, t))
     own = _OWN * rng.random(_CARDS)
     grown = []
     for k, grid in enumerate(edges):

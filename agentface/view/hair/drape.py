@@ -17,7 +17,7 @@ from agentface.view.hair.styles import REFERENCE_EYES, parting_of, whorl_of
 COLUMNS = 48
 _ON_PARTING = 0.45
 """The part of the columns that start along the parting; the others fan out round the whorl."""
-_TURNS_DEG = (45.0, 186.0)
+_TURNS_DEG = (54.0, 186.0)
 """Round the head from the front, where it is widest: where the first and the last column lie."""
 _ARC, _FALL = 24, 14
 _SMOOTHINGS, _PULLS, _LAST_SMOOTHINGS = 8, 10, 30
@@ -28,9 +28,9 @@ _BESIDE = 0.0008
 """Metres from the parting where hair starts."""
 _ZIGZAG = ((0.0013, 240.0, 0.0), (0.0007, 610.0, 1.3))
 """Waves of the parting, which is no line: metres to both sides, radians a metre, where each starts."""
-_FRAMING_DEG, _FRAMING_REACH_DEG = 14.0, 24.0
+_FRAMING_DEG, _FRAMING_REACH_DEG = 7.0, 24.0
 """How far the hair at the face comes forward over the cheeks, and to which turn behind it does."""
-_BULGE, _INWARD = 0.005, 0.022
+_BULGE, _INWARD = 0.003, 0.009
 """Metres that falling hair stands off half way down, and that its ends turn in towards the neck."""
 
 
@@ -58,7 +58,7 @@ def _fall(model: HeadModel, look: HairLook, widest: Doubles, sign: float, scale:
     s = np.linspace(0.0, 1.0, _FALL + 1)[None, 1:]
     away = np.degrees(turn - turn[0]) / _FRAMING_REACH_DEG
     turn = turn - np.radians(_FRAMING_DEG) * np.exp(-(away**2)) * smoothstep(0.05, 0.75, s)
-    reach = reach + scale * (_BULGE * np.sin(np.pi * s) - _INWARD * smoothstep(0.55, 1.05, s) ** 1.5)
+    reach = reach + scale * (_BULGE * np.sin(np.pi * s) - _INWARD * smoothstep(0.35, 1.1, s) ** 1.5)
     lowest = look.length * float(model.landmarks["menton"][1])
     drop = s * (lowest - widest[:, 1:2] - Hull.centre_of(model)[1])
     return np.stack([sign * reach * np.sin(turn), widest[:, 1:2] + drop, reach * np.cos(turn)], axis=2)

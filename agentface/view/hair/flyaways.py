@@ -4,14 +4,16 @@ from __future__ import annotations
 
 import numpy as np
 
-from agentface.conventions import SIDES
+from agentface.conventions import SIDES, Doubles
 from agentface.head.look import HairLook
 from agentface.head.model import HeadModel
+from agentface.mesh.smoothstep import smoothstep
 from agentface.view.hair.groom import smoothed
 from agentface.view.hair.hairline import Hairline, HairRoots
 from agentface.view.hair.ribbons import unit_rows
-from agentface.view.hair.sheets import Sheet
+from agentface.view.hair.sheets import Sheet, resampled
 from agentface.view.hair.strand_set import StrandSet, paints
+from agentface.view.hair.strands import nearest_vertices
 from agentface.view.hair.styles import Amount
 
 _AWAY = 0.004
@@ -22,6 +24,15 @@ _AT_FACE, _TO_THE_FRONT = 0.6, 5.0
 """The part of them that gathers at the face, and the exponent with which it does."""
 _BABIES, _BABY_LENGTH, _BABY_WIDTH, _BABY_DEPTH = 1.2, (0.005, 0.013), 0.7, 0.005
 """Short hairs for each flyaway; metres; their width beside that of flyaways; the most metres behind the hairline."""
+_EDGES, _EDGE_LENGTH, _EDGE_WIDTH = 3.2, (0.012, 0.050), (0.4, 0.85)
+"""Hairs before the edge of the hair at the face for each flyaway; metres; their widths beside that of flyaways."""
+_EDGE_AHEAD, _EDGE_NEARER, _EDGE_BEHIND = 0.0065, 1.8, 0.007
+"""Metres before it at most where they are rooted, the exponent with which they gather at it, and how far they go in."""
+_EDGE_SPAN, _EDGE_TO_ROOT, _EDGE_POINTS = 0.115, 1.4, 90
+"""Metres from the parting to where the last of them is rooted, the exponent with which they grow fewer to there; points
+of the edge that they follow."""
+_ON_SKIN, _OVER_EDGE, _JOINED = 0.0003, 0.002, 0.55
+"""Metres over the skin at their roots, over the edge at their ends; the part of their length in which they rise."""
 _SMOOTHINGS = 4
 """Of the card's course, which has fewer points."""
 _ACROSS = 1.8
@@ -69,3 +80,37 @@ def baby_hairs(model: HeadModel, amount: Amount, look: HairLook, beside: float, 
     paint = paints(look, np.full(count, 1.1), np.full(count, 0.45), rng, 0.4)
     return StrandSet(points, _BABY_WIDTH * amount.radius * rng.uniform(0.6, 1.2, count), paint,
                   np.ones((count, len(t))), np.ones(count), np.ones(count))  # fmt: skip
+
+
+def edge_hairs(
+    model: HeadModel, beneath: list[Sheet], amount: Amount, look: HairLook, rng: np.random.Generator
+) -> StrandSet:
+    """Single hairs that are rooted before the front edges of the sheets ``beneath``, fewer and fewer, and join them."""
+    count, t = round(_EDGES * amount.hairs), np.linspace(0.0, 1.0, amount.points)
+    grown = []
+    for sheet in beneath:
+        lines = sheet.points[[0, 1]].astype(np.float64)
+        (edge, inner), (along, _) = resampled(lines, np.tile(np.linspace(0.0, 1.0, _EDGE_POINTS), (2, 1)))
+        way = _EDGE_SPAN * rng.random((count, 1)) ** _EDGE_TO_ROOT + rng.uniform(*_EDGE_LENGTH, (count, 1)) * t
+        at, aside = (
+            np.stack([np.interp(way, along, rows[:, axis]) for axis in range(3)], axis=2)
+            for rows in (edge, unit_rows(inner - edge))
+        )
+        ahead = _EDGE_AHEAD * rng.random((count, 1)) ** _EDGE_NEARER * (1.0 - t) ** 1.2
+        at = at + (_EDGE_BEHIND * rng.random((count, 1)) * t - ahead)[..., None] * aside
+        away = unit_rows(at - sheet.centre)
+        joined = smoothstep(0.0, _JOINED, t)[:, None]
+        grown.append((1.0 - joined) * _on_skin(model, at) + joined * (at + _OVER_EDGE * away))
+    points = smoothed(np.concatenate(grown), 2)
+    total = len(points)
+    paint = paints(look, np.full(total, 1.1), np.full(total, 0.75), rng, 0.4)
+    return StrandSet(points, amount.radius * rng.uniform(*_EDGE_WIDTH, total), paint, np.ones((total, len(t))),
+                  np.ones(total), np.ones(total))  # fmt: skip
+
+
+def _on_skin(model: HeadModel, points: Doubles) -> Doubles:
+    """``points (N, P, 3)`` m moved onto the plane of the nearest vertex of the skin."""
+    nearest = nearest_vertices(points.reshape(-1, 3), model.vertices)
+    normals = model.normals[nearest].reshape(points.shape)
+    off = ((points - model.vertices[nearest].reshape(points.shape)) * normals).sum(axis=2, keepdims=True)
+    return np.asarray(points - (off - _ON_SKIN) * normals)

@@ -29,9 +29,11 @@ _GUIDES, _GUIDE_POINTS = 420, 60
 _GUIDE_SEED = 7
 _WAVE = 0.090
 """Metres from wave to wave of wavy hair."""
-_LOCKS_BEHIND = 0.001
+_LOCKS_BEHIND = 0.0035
 """Metres behind the hairline where locks begin; single hairs stand before them."""
 _HAIRS_ELSEWHERE = 0.05
+_OVER_EAR = 0.002
+"""Metres that hair may lie over the bare skin round an ear: from before it none is combed over it."""
 _STRAY = 0.16
 """The part of the single hairs that leave their lock."""
 _FULL = 0.050
@@ -58,6 +60,11 @@ def groom(model: HeadModel, normals: Floats, look: HairLook, quality: str, rng: 
     strands = locks.grown(roots, amount, look, rng)
     roots = HairRoots.drawn(model, normals, line, amount.hairs, rng, elsewhere=_HAIRS_ELSEWHERE)
     strands = strands.joined(locks.grown(roots, amount, look, rng, single=True))
+    if not style.over_ears:
+        between = 0.5 * (strands.points[:, 1:] + strands.points[:, :-1])
+        dense = np.concatenate([strands.points, between], axis=1)
+        off_ear = line.off_ear(dense.reshape(-1, 3)).reshape(dense.shape[:2])
+        strands = strands.chosen(off_ear.min(axis=1) > -_OVER_EAR)
     if look.style == "bun":
         strands = strands.joined(bun(model, amount, strands.points.shape[1] - 1, look, rng))
     return strands.in_order(model)

@@ -14,7 +14,7 @@ from agentface.head.model import HeadModel
 from agentface.view.hair.cap import scalp_cap
 from agentface.view.hair.cards import cards
 from agentface.view.hair.drape import parting_line
-from agentface.view.hair.flyaways import baby_hairs, flyaways
+from agentface.view.hair.flyaways import baby_hairs, edge_hairs, flyaways
 from agentface.view.hair.groom import groom
 from agentface.view.hair.hairline import Hairline
 from agentface.view.hair.hull import Hull
@@ -94,5 +94,6 @@ class GrownHair:
         if self._cards:
             amount = STYLES[look.style].amounts[quality]
             short = baby_hairs(model, amount, look, parting_of(model, look), rng)
-            return flyaways(self._cards, amount, look, rng).joined(short).in_order(model)
+            edge = edge_hairs(model, self._beneath, amount, look, rng)
+            return flyaways(self._cards, amount, look, rng).joined(short).joined(edge).in_order(model)
         return groom(model, model.normals, look, quality, rng)

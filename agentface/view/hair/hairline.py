@@ -42,6 +42,10 @@ _WANDERING = ((0.0018, 130.0, 0.0, 1.0), (0.0012, 310.0, 60.0, 0.0), (0.0008, 72
 """Waves of the hairline: metres up and down, radians a metre to the left and ahead, where each starts."""
 
 
+_SIDE_WANDERING = ((0.0016, 170.0, 0.6), (0.0012, 420.0, 2.0), (0.0007, 900.0, 1.0))
+"""The same beside the forehead: metres to and fro, radians a metre upward, where each starts on the left."""
+
+
 _EAR = 0.28, 0.42
 """How far an ear keeps hair away ahead and behind, in eye separations: before it grow sideburns."""
 _BARE = 0.02
@@ -66,13 +70,16 @@ class Hairline:
         height = np.interp(turn, self._turns, self._heights)
         # the forehead's part is fixed by the landmark, the rest by the size of the face
         above = points[:, 1] - np.where(height > 0, height * self.top, height * self.unit)
-        y, z = points[:, 1] / self.unit + 0.40, points[:, 2] / self.unit + 0.24
-        ahead = z + 0.25 * y
-        off_ear = (np.hypot(y / 0.54, ahead / np.where(ahead > 0.0, *_EAR)) - 1) * 0.42 * self.unit
         above = above + _uneven(points)
         slant = np.interp(turn, self._turns, self._slant)
         away = above * (slant + (1.0 - slant) * np.clip(above / _ALL_ROUND, 0.0, 1.0))
-        return np.asarray(np.minimum(away, off_ear))
+        return np.asarray(np.minimum(away + (1.0 - slant) * _uneven_sides(points), self.off_ear(points)))
+
+    def off_ear(self, points: Floats | Doubles) -> Doubles:
+        """``(N,)`` metres from the ear's surroundings, where no hair grows; negative in them."""
+        y, z = points[:, 1] / self.unit + 0.40, points[:, 2] / self.unit + 0.24
+        ahead = z + 0.25 * y
+        return np.asarray((np.hypot(y / 0.54, ahead / np.where(ahead > 0.0, *_EAR)) - 1) * 0.42 * self.unit)
 
     def taper(self, points: Floats | Doubles, front: float) -> Doubles:
         """``(N,)`` metres behind the hairline where a crop has its whole length: ``front`` at the forehead."""
@@ -167,6 +174,12 @@ def _uneven(points: Floats | Doubles) -> Doubles:
     """``(N,)`` m: how far a hairline wanders, which is no line; not the same on both sides."""
     x, z = points[:, 0], points[:, 2]
     return np.asarray(sum(far * np.sin(turns * x + aside * z + start) for far, turns, aside, start in _WANDERING))
+
+
+def _uneven_sides(points: Floats | Doubles) -> Doubles:
+    """``(N,)`` m: how far it wanders to and fro where it is steep."""
+    x, y = points[:, 0], points[:, 1]
+    return np.asarray(sum(far * np.sin(turns * y + start * np.sign(x)) for far, turns, start in _SIDE_WANDERING))
 
 
 def _wave(points: Doubles) -> Doubles:

@@ -19,14 +19,19 @@ from agentface.view.hair.styles import thickness_of
 
 _EVERY, _ROWS = 3, 21
 """Which of the columns they have; points along each."""
-_LAYER_AT_ROOT, _LAYER, _SHARE = 0.66, 0.42, 0.96
-"""Where between the skin and the outside of the hair the sheets lie, and how long they are beside the cards."""
-_LIGHT_AT_ROOT, _LIGHT = 0.68, 0.42
+_LAYER_ON_TOP, _LAYER, _TOP, _SHARE = 0.82, 0.22, 2.0, 0.97
+"""Where between the skin and the outside of the hair the sheets lie, on the head and beside it; how soon it is on the
+head; how long they are beside the cards."""
+_LIGHT_AT_ROOT, _LIGHT = 0.72, 0.62
 """How much light the cards let through to them."""
-_AT_PARTING, _RISE = 0.22, 0.050
+_AT_PARTING, _RISE = 0.42, 0.055
 """How high hair lies where it starts, as a part of its thickness, and the metres over which it rises from there."""
-_EDGE_SHADE, _EDGE_REACH = 0.7, 0.013
-"""How much light the front edge keeps off the skin below it, and within how many metres."""
+_EDGE_SHADES = ((0.60, 0.009), (0.42, 0.0195))
+"""How much light the front edge keeps off the skin below it, and within how many metres: close by, and as a whole."""
+_EDGE_POINTS, _EDGE_COLUMNS = 80, 4
+"""Of the edge, and how many columns of a sheet behind it keep light off the skin below them."""
+_AT_SIDES, _SIDES = 0.62, 0.075
+"""How thick hair lies beside the head as a part of that on top, and metres over the centre of the head to there."""
 _ROOTWARD = 0.45
 """How much denser than half way the points along hair are at its root, where it lies round the head."""
 LOCKS, FIRST_CARD, PAINTED = 13, 14, 26
@@ -35,7 +40,7 @@ _WIDTHS = 0.3, 1.7
 """Of the spaces between columns, in locks, as parts of their mean."""
 _UNEVEN = 0.05
 """The part by which the lengths of locks differ."""
-_LOWEST = 0.0060
+_LOWEST = 0.0010
 """Metres over the hull, which is smoother than the head."""
 _TUCKED = 0.2
 """How high the front edge lies, as a part of the hair's thickness."""
@@ -84,8 +89,13 @@ def edge_shade(grown: list[Sheet], skin: Floats) -> Doubles:
     """``(V,)`` 0..1: how much of the surroundings' light hair at the face keeps off the ``skin (V, 3)`` beside it."""
     away = np.full(len(skin), np.inf, np.float32)
     for sheet in grown:
-        away = np.minimum(away, np.linalg.norm(skin[:, None] - sheet.points[0], axis=2).min(axis=1))
-    return np.asarray(_EDGE_SHADE * np.exp(-((away / _EDGE_REACH) ** 2)), np.float64)
+        edge = resampled(
+            sheet.points[:_EDGE_COLUMNS].astype(np.float64),
+            np.tile(np.linspace(0.0, 1.0, _EDGE_POINTS), (_EDGE_COLUMNS, 1)),
+        )[0]
+        for point in edge.reshape(-1, 3).astype(np.float32):
+            away = np.minimum(away, np.linalg.norm(skin - point, axis=1))
+    return np.asarray(sum(share * np.exp(-((away / reach) ** 2)) for share, reach in _EDGE_SHADES), np.float64)
 
 
 def _sheet(hull: Hull, look: HairLook, paths: Doubles, thickness: float, rng: np.random.Generator) -> Sheet:
@@ -96,8 +106,11 @@ def _sheet(hull: Hull, look: HairLook, paths: Doubles, thickness: float, rng: np
     points, along = resampled(paths, _SHARE * (1.0 - _UNEVEN * uneven)[:, None] * t)
     tucked = _TUCKED + (1.0 - _TUCKED) * smoothstep(0.0, 1.5, across)[:, None]
     near_root = 1.0 - smoothstep(0.03, 0.12, along)
-    layer = _LAYER + (_LAYER_AT_ROOT - _LAYER) * near_root
-    points = points + (thickness * layer * tucked * risen(along))[..., None] * hull.outward(points)
+    thick = volume(hull, points)
+    on_top = np.clip(_TOP * (thick - _AT_SIDES) / (1.0 - _AT_SIDES), 0.0, 1.0)
+    layer = _LAYER + (_LAYER_ON_TOP - _LAYER) * on_top
+    height = thickness * layer * tucked * risen(along) * thick
+    points = points + height[..., None] * hull.outward(points)
     points = hull.push_out(points, 0.001 + _LOWEST * smoothstep(0.0, 0.03, along))
     if look.curl:
         points = points + 0.003 * look.curl * waves(hull, points, along, uneven)
@@ -115,6 +128,11 @@ def parts_along(rows: int) -> Doubles:
 def risen(along: Doubles) -> Doubles:
     """How high hair lies ``along`` m from where it starts, as a part of its thickness."""
     return np.asarray(_AT_PARTING + (1.0 - _AT_PARTING) * np.sin(0.5 * np.pi * np.clip(along / _RISE, 0.0, 1.0)))
+
+
+def volume(hull: Hull, points: Doubles) -> Doubles:
+    """How thick hair lies at ``points (..., 3)`` m, as a part of its thickness: less beside the head than on it."""
+    return np.asarray(_AT_SIDES + (1.0 - _AT_SIDES) * smoothstep(0.0, _SIDES, points[..., 1] - hull.centre[1]))
 
 
 def resampled(paths: Doubles, parts: Doubles) -> tuple[Doubles, Doubles]:

@@ -10,6 +10,7 @@ from agentface.conventions import Doubles
 from agentface.head.look import HairLook
 from agentface.head.model import HeadModel
 from agentface.view.hair.strands import Strands, nearest_vertices
+from agentface.view.hair.visible import Flags
 
 _GREY = 0.085
 
@@ -31,6 +32,10 @@ class StrandSet:
     def joined(self, other: StrandSet) -> StrandSet:
         """Both."""
         return StrandSet(*(np.concatenate([getattr(self, f.name), getattr(other, f.name)]) for f in fields(self)))
+
+    def chosen(self, kept: Flags) -> StrandSet:
+        """Those of ``kept (N,)``."""
+        return StrandSet(*(getattr(self, f.name)[kept] for f in fields(self)))
 
     def in_order(self, model: HeadModel) -> Strands:
         """Those that hide others, then those that blend, the outermost last."""
