@@ -22,7 +22,7 @@ const vec3 EDGE = vec3(0.84, 0.85, 0.85);    // of its green: enamel alone is gr
 const vec3 GAP = vec3(0.46, 0.34, 0.27);     // of the light on a tooth, what is left where the next one meets it
 const vec3 LIP_SHADE = vec3(0.30, 0.23, 0.20);   // of the light on a tooth that a lip lies on: what it lets through is red
 const float GAP_FROM = 0.82, EDGE_GAP = 0.24;    // across, where teeth begin to shade each other; how much sooner at their round corners
-const float LIT = 0.54;   // of the key and fill on enamel, what does not go on into the tooth
+const float LIT = 0.52;   // of the key light on enamel, what does not go on into the tooth
 const float TURNED = 0.35;   // of what goes round in the mouth, what arrives where a face is turned away from the lips
 
 // The colour of a tooth; the gum lies on it in a bow.
@@ -46,7 +46,7 @@ void main() {
     n = normalize(n + (0.03 * enamelled + 0.14 * (1.0 - enamelled) * (1.0 - tongue) + 0.34 * tongue) * (grain.bag - 0.5));
     vec3 albedo = matter.x * tooth + (1.0 - matter.x - tongue) * GUM + tongue * TONGUE * (1.0 - 0.12 * groove) * mix(0.72, 1.0, smoothstep(-0.006, 0.0, reach.z));
     albedo *= mix(0.88 + 0.24 * grain.r, 0.98 + 0.04 * grain.r, enamelled);
-    float rough = mix(0.32, 0.24, enamelled), sky_part = min(reach.x * mix(2.0 - 0.7 * tongue, 1.55, enamelled), 1.0), key_part = reach.y;   // teeth light each other
+    float rough = mix(0.32, 0.24, enamelled), sky_part = min(reach.x * mix(2.0 - 0.7 * tongue, 1.9, enamelled), 1.0), key_part = reach.y;   // teeth light each other
     // what the walls send back is red and dies away behind
     float inside = smoothstep(-0.006, 0.0, reach.z);
     vec3 walls = WALLS * sky_part * inside * exp(-reach.z / 0.016);
@@ -56,7 +56,7 @@ void main() {
     for (int i = 0; i < 2; i++) {
         vec3 l = light_direction[i].xyz, h = normalize(l + view);
         float n_l = max(dot(n, l), 0.0), part = i == 0 ? key_part * mix(sky_part, 1.0, 0.45) : sky_part;
-        light += mix(1.0, LIT, enamelled) * part * light_colour[i].rgb * wrapped(vec3(dot(n, l)), mix(vec3(0.40, 0.26, 0.22), vec3(0.42, 0.38, 0.34), enamelled));
+        light += (i == 0 ? mix(1.0, LIT, enamelled) : 1.0) * part * light_colour[i].rgb * wrapped(vec3(dot(n, l)), mix(vec3(0.40, 0.26, 0.22), vec3(0.42, 0.38, 0.34), enamelled));
         gloss += part * mix(sky_part, 1.0, 0.4) * light_colour[i].rgb * ggx(max(dot(n, h), 0.0), rough) * visibility(n_l, n_v, rough) * fresnel(0.045, max(dot(view, h), 0.0)) * n_l * PI;
     }
     gloss += sky_part * hemisphere(reflect(-view, n)) * fresnel(0.045, n_v) * 0.8;
