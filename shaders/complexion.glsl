@@ -23,7 +23,7 @@ vec3 complexion_colour(vec4 tint, float mouth, float wet, float blotches) {
     vec3 c = skin_tone * mix(vec3(1.0), vec3(1.04, 0.94, 0.92), clamp(2.0 * blotches - 0.5, 0.0, 1.0));
     c *= mix(vec3(1.0), tint.x < 0.0 ? vec3(0.72, 0.74, 0.80) : vec3(1.03, 0.76, 0.74), abs(tint.x) * (0.8 * blotches + 0.6));
     c *= mix(vec3(1.0), vec3(0.94, 0.92, 0.93), tint.y) * mix(vec3(1.0), SALLOW, tint.z);
-    c = mix(c, vec3(0.34, 0.10, 0.085), mouth);
+    c = mix(c, vec3(0.29, 0.105, 0.09), mouth);
     c = mix(c, mix(skin_tone, vec3(0.60, 0.30, 0.26), 0.45) * vec3(0.98, 0.86, 0.84), 0.8 * wet);
     return mix(c, hair_colour, HIDDEN * tint.w);
 }

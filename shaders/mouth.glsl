@@ -3,11 +3,14 @@ uniform float mouth_light;   // how much light the lips let in
 uniform vec2 mouth_bow;       // how far behind the middle the corners are, and how much higher, metres
 uniform vec4 mouth_opening;  // heights of the upper and the lower lip's edge, half the width, z; in the head's axes, metres
 
-const float LIP_SHADES = 0.0042;   // metres from a lip's edge to where it shades teeth no more, if the mouth is open wide
+const float LIP_SHADES = 0.0060;   // metres from a lip's edge to where it shades teeth no more, if the mouth is open wide
+const float LOWER_CLEAR = 0.45;    // how much clearer the edge of the lower lip is, which has light above it
 const vec3 LIP_GLOW = vec3(0.165, 0.082, 0.074);   // of the light on lips, what goes through them to where they shade themselves
-const float CHEEKS = 0.30;   // of the light on the teeth, what they send to the cheeks beside them
-const float ROUND = 0.24;    // of the key light on an open mouth, what goes round in it from wall to wall
-const float ROUND_DEPTH = 0.040;   // metres, where about a third of that is left
+const float CHEEKS = 0.14;   // of the light on the teeth, what they send to the cheeks beside them
+const float ROUND = 0.16;    // of the key light on an open mouth, what goes round in it from wall to wall
+const float FADES_FROM = 0.003, FADES_OVER = 0.010;   // metres behind the lips, where the walls begin to close off the light, and how fast
+const float THROAT = 0.03;   // of the light, what is left however far behind
+const float BOW_COUNTS = 0.8;   // of how far the corners lie behind the middle: the light that passes there has passed the cheeks
 
 // How far behind the lips a place is.
 float mouth_depth(vec3 at) {
@@ -15,17 +18,30 @@ float mouth_depth(vec3 at) {
     return mouth_opening.w - mouth_bow.x * min(aside * aside, 1.6) - at.z;
 }
 
+// How much light the walls leave to a place behind the lips.
+float mouth_fade(vec3 at, float from, float over) {
+    float aside = at.x / mouth_opening.z;
+    float behind = mouth_depth(at) + BOW_COUNTS * mouth_bow.x * min(aside * aside, 1.6);
+    return mix(THROAT, 1.0, exp(-max(behind - from, 0.0) / over));
+}
+
 // How far inside the opening a place is seen, from the nearer lip's edge, 0, to where that shades no more, 1.
 float mouth_clear(vec3 at) {
     float aside = min(at.x * at.x / (mouth_opening.z * mouth_opening.z), 1.2), bow = mouth_bow.y * aside;
     float middle = 0.5 * (mouth_opening.x + mouth_opening.y), high = 0.5 * (mouth_opening.x - mouth_opening.y) * (1.0 - min(aside, 1.0));
     float shaded = clamp(0.45 * (mouth_opening.x - mouth_opening.y), 0.0008, LIP_SHADES);
-    return (high - abs(at.y - middle - bow)) / shaded;
+    float up = at.y - middle - bow;
+    return (high - abs(up)) / shaded + (up < 0.0 ? LOWER_CLEAR : 0.0);
 }
 
-// Of the key light what goes round in the mouth so far behind the lips.
-float mouth_round(float behind) {
-    return ROUND * mouth_light * exp(-max(behind, 0.0) / ROUND_DEPTH);
+// Of the key light what goes round in the mouth to where the walls leave that part.
+float mouth_round(float fade) {
+    return ROUND * mouth_light * fade;
+}
+
+// How much light the walls leave to a place on themselves.
+float wall_fade(vec3 at) {
+    return mouth_fade(at, FADES_FROM, FADES_OVER);
 }
 
 // At a place in the head's axes: the parts of the surroundings' light and of the key light that arrive.
@@ -52,7 +68,7 @@ float sky_light(float ambient, float lip, float mouth, float wet, vec3 at) {
     float light = max(max(ambient, mix(0.40, 0.80, mouth_light) * lip), 0.45 * wet);
     float behind = max(mouth_depth(at), 0.0), inside = mouth_reach(at).x * (0.08 + exp(-max(behind - 0.010, 0.0) / 0.016));
     inside += CHEEKS * mouth_light * exp(-behind / 0.012);
-    return mix(light, inside, mouth);
+    return mix(light, inside * wall_fade(at), mouth);
 }
 
 // What gets through and between lips of the key light where they keep it off themselves: less where they touch.

@@ -57,7 +57,7 @@ void main() {
 #endif
     soft_key = dot(soft, key);
     float lit = mix(1.0, key_light(position, n), smoothstep(-0.05, 0.30, soft_key));
-    around = albedo * (light * occlusion + mouth * mouth_round(mouth_depth(own_place)) * light_colour[0].rgb + lip_glow(outer * (1.0 - mouth), ambient, lit * clamp(2.0 * soft_key, 0.0, 1.0))) + gloss;
+    around = albedo * (light * occlusion + mouth * mouth_round(wall_fade(own_place)) * light_colour[0].rgb + lip_glow(outer * (1.0 - mouth), ambient, lit * clamp(2.0 * soft_key, 0.0, 1.0))) + gloss;
     lit = mix(lit, 0.5 * sky, mouth);   // inside, no more than of the sky
     key_body = albedo * light_colour[0].rgb * bled(lit, BLED) * mix(vec3(1.0), occlusion, 0.75);
     matter = vec4(lip, moist, rough, lit * shown * (1.0 - UPPER_DULL * lip * complexion.y));

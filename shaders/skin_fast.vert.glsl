@@ -34,7 +34,7 @@ void main() {
     vec3 occlusion = bled(sky, BOUNCED), wrap = WRAP * (1.0 - 0.6 * mouth), view = normalize(eye_point.xyz - position);
     float lit = mix(1.0, lit_at_rest, smoothstep(-0.05, 0.30, dot(soft, light_direction[0].xyz)));
     lit = mix(lit, 0.5 * sky, mouth);   // inside, no more than of the sky
-    vec3 diffuse = hemisphere(soft) * occlusion + mouth * mouth_round(mouth_depth(own_place)) * light_colour[0].rgb + lip_glow(outer * (1.0 - mouth), ambient, lit * clamp(2.0 * dot(soft, light_direction[0].xyz), 0.0, 1.0)), gloss = vec3(0.0);
+    vec3 diffuse = hemisphere(soft) * occlusion + mouth * mouth_round(wall_fade(own_place)) * light_colour[0].rgb + lip_glow(outer * (1.0 - mouth), ambient, lit * clamp(2.0 * dot(soft, light_direction[0].xyz), 0.0, 1.0)), gloss = vec3(0.0);
     float n_v = max(dot(n, view), 0.02), rough = roughness(complexion.z, lip, moist), f0 = mix(F0.x, F0.y, max(lip, wet));
     for (int i = 0; i < LIGHTS; i++) {
         float reach = unhidden(soft, light_direction[i].xyz, i == 1 ? FILL_OPEN : RIM_OPEN);

@@ -7,7 +7,7 @@ import pytest
 
 from agentface.resources import face_names
 from agentface.view.parts.shirt import shirt
-from agentface.view.parts.teeth import crown_places
+from agentface.view.parts.teeth import crown_places, meeting_places, tones
 from tests.heads import head_model
 
 
@@ -34,12 +34,40 @@ def test_each_of_fourteen_teeth_spans_its_own_width_and_height(face, row):
     assert places[front, 0].max() > 0.9
 
 
+@pytest.mark.parametrize("face", face_names())
+@pytest.mark.parametrize("row", ["teeth_upper", "teeth_lower"])
+def test_incisors_meet_in_the_middle_of_the_face(face, row):
+    mesh = head_model(face).parts[row]
+    tooth = mesh.attributes["_MATERIAL"][:, 0] / 255.0
+    positions = mesh.attributes["POSITION"]
+    met = meeting_places(positions, mesh.triangles, tooth)
+    own = crown_places(positions, mesh.triangles, tooth)
+    np.testing.assert_array_equal(met[:, 1], own[:, 1])
+    front = (tooth > 0.5) & (positions[:, 2] > positions[tooth > 0.5, 2].max() - 0.004)
+    at_middle, clear = np.abs(positions[:, 0]) < 0.0003, np.abs(np.abs(positions[:, 0]) - 0.003) < 0.001
+    assert np.abs(met[front & at_middle, 0]).min() > 0.85
+    assert np.abs(met[front & clear, 0]).max() < 0.9
+
+
+@pytest.mark.parametrize("row", ["teeth_upper", "teeth_lower"])
+def test_canines_are_darkest_of_the_front_teeth_and_each_tooth_is_of_one_tone(row):
+    mesh = head_model("amber").parts[row]
+    tooth = mesh.attributes["_MATERIAL"][:, 0] / 255.0
+    tone = tones(mesh.attributes["POSITION"], mesh.triangles, tooth)
+    assert (tone[tooth < 0.5] == 0).all()
+    assert len(np.unique(tone[tooth > 0.5])) == 14
+    aside = mesh.attributes["POSITION"][:, 0]
+    middle = (tooth > 0.5) & (np.abs(aside) < 0.002)
+    assert tone[middle].max() < 0.5 < tone.max()
+
+
 def test_a_tooth_alone_needs_no_gum():
     box = np.array([[x, y, z] for x in (-1, 1) for y in (0, 1) for z in (4, 5)], np.float32)
     triangles = np.array([[i, (i + 1) % 8, (i + 2) % 8] for i in range(8)], np.int32)
     places = crown_places(box, triangles, np.ones(8, np.float32))
     assert set(np.abs(places[:, 0])) == {1.0}
     assert set(places[:, 1]) == {0.0, 1.0}
+    np.testing.assert_array_equal(meeting_places(box, triangles, np.ones(8, np.float32)), places)
 
 
 def test_the_shirt_is_measured_from_its_collar():

@@ -13,7 +13,7 @@ from agentface.head.ring_names import LipRing
 from agentface.head.rings import RingHalves
 from agentface.view.gl.drawn_mesh import DrawnMesh
 from agentface.view.parts.rigid import RigidPart, rigid_mesh
-from agentface.view.parts.teeth import crown_places, evened_facing
+from agentface.view.parts.teeth import evened_facing, meeting_places, tones
 
 PARTS = "teeth_upper", "teeth_lower", "tongue"
 SHADED = 0.22  # of the light on the lower jaw, which the upper lip and the nose keep off
@@ -115,9 +115,9 @@ def mouth_mesh(model: HeadModel, name: str) -> DrawnMesh:
     """One of :data:`PARTS` for ``shaders/part.vert.glsl``."""
     mesh = model.parts[name]
     material = mesh.attributes["_MATERIAL"].astype(np.float32) / np.float32(255)
-    material[:, 3] = 0.0
     positions = mesh.attributes["POSITION"]
-    detail = crown_places(positions, mesh.triangles, material[:, 0])
+    detail = meeting_places(positions, mesh.triangles, material[:, 0])
+    material[:, 3] = tones(positions, mesh.triangles, material[:, 0])
     drawn = rigid_mesh(positions, mesh.triangles, material, detail)
     drawn.fields["facing"][:] = evened_facing(positions, drawn.fields["facing"], material[:, 0])
     return drawn

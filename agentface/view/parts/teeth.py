@@ -8,6 +8,8 @@ from agentface.conventions import Floats, Indices
 from agentface.mesh.smoothstep import smoothstep
 
 _EVENED = 0.55  # of the way from a crown's own normals to those of the row
+_TONES = 0.10, 0.22, 0.75, 0.50, 0.55, 0.65, 0.70  # from the middle incisor to the last molar
+_UNLIKE, _ANY = 0.10, 12.9  # how far a tooth is from the tone of its kind, by a sine no two share
 
 
 def evened_facing(positions: Floats, facing: Floats, tooth: Floats) -> Floats:
@@ -64,3 +66,44 @@ def _pieces(count: int, triangles: Indices) -> Indices:
         piece = piece[piece]
         if np.array_equal(piece, before):
             return piece
+
+
+def meeting_places(positions: Floats, triangles: Indices, tooth: Floats) -> Floats:
+    """``(P, 2)``: as :func:`crown_places`, but -1 and 1 across where the next tooth meets it: crowns overlap."""
+    places = crown_places(positions, triangles, tooth)
+    row, flat = _row(positions, triangles, tooth), positions[:, [0, 2]]
+    middles = [flat[mine].mean(0) for mine in row]
+    for here, mine in enumerate(row):
+        beside = [_towards(flat, middles, row, here, there) for there in (here - 1, here + 1) if 0 <= there < len(row)]
+        sides = [way * np.sign(way @ places[mine, 0]) for way in beside]
+        for way, side in zip(beside, sides, strict=True):
+            nearest = (way > 0) & (way >= np.max(beside, axis=0))
+            places[mine[nearest], 0] = side[nearest]
+    return places
+
+
+def _towards(flat: Floats, middles: list[Floats], row: list[Indices], here: int, there: int) -> Floats:
+    """How far the vertices of tooth ``here`` lie from its middle to where ``there`` meets it, 1."""
+    way = middles[there] - middles[here]
+    apart = float(np.linalg.norm(way))
+    own, other = (flat[row[here]] - middles[here]) @ way, (middles[there] - flat[row[there]]) @ way
+    meets = own.max() * apart**2 / (own.max() + other.max())
+    return np.asarray(own / meets)
+
+
+def tones(positions: Floats, triangles: Indices, tooth: Floats) -> Floats:
+    """``(P,)`` how dark and yellow the tooth of a vertex is, 0..1: canines most, and no two alike."""
+    tone = np.zeros(len(positions), np.float32)
+    row = _row(positions, triangles, tooth)
+    for here, mine in enumerate(row):
+        from_middle = min(abs(here + 0.5 - 0.5 * len(row)), len(_TONES) - 0.5)
+        tone[mine] = _TONES[int(from_middle)] + _UNLIKE * np.sin(_ANY * here)
+    return np.clip(tone, 0.0, 1.0)
+
+
+def _row(positions: Floats, triangles: Indices, tooth: Floats) -> list[Indices]:
+    """The vertices of each tooth, from one end of the row to the other."""
+    piece = _pieces(len(positions), triangles)
+    row = [np.flatnonzero(piece == label).astype(np.int32) for label in np.unique(piece[tooth > 0.5])]
+    back = float(positions[:, 2].min())
+    return sorted(row, key=lambda mine: float(np.arctan2(positions[mine, 0].mean(), positions[mine, 2].mean() - back)))
