@@ -1,7 +1,7 @@
 #version 330 core
 centroid in vec3 dull, bright;
 centroid in vec4 strand;   // across in locks, along 0..1, light, a number of its own
-centroid in vec3 drift;    // how hairs wander, gaps deepen and light changes
+centroid in vec3 drift;    // how hairs wander, the front edge does and light changes
 in vec2 spread;            // the first two of strand, whose differences from pixel to pixel hold at edges, too
 out vec4 colour;           // its opacity becomes coverage of the samples
 
@@ -18,8 +18,7 @@ const float ROOT = 0.010;      // of the length, over which they begin
 const float BLUNT = 0.35;      // of its width, with which it does
 const float SHEET_ROOT = 0.2; // of that, for the sheets, through which one would see past the head
 const float EDGE = 3.0;        // hairs a lock's width, over which the sheet's front edge grows dense
-const float GAPS = 2.5;        // how soon along them locks are seen apart
-const vec3 COOL = vec3(0.96, 1.0, 1.05), WARM = vec3(1.05, 1.0, 0.93);   // wisps' own hues
+const float GAP = 0.12, GAPS = 0.3;  // how much darker it is between locks, and how soon along them it comes to that
 const float APART = 0.65;      // from here on locks narrow towards their tips
 
 float scattered(float number) {
@@ -55,7 +54,7 @@ void main() {
     float cover = min(min(covered.x, covered.y), min(covered.z, covered.w));
     if (cover < least_cover) discard;
     float strands = 0.35 * ends + 0.65 * here;
-    float gap = 1.0 - (0.04 + 0.16 * own) * min(GAPS * along, 1.0) * smoothstep(0.2, 1.0, abs(lock)) * (0.9 + drift.g);
+    float gap = 1.0 - min(GAPS * along, GAP) * smoothstep(0.2, 1.0, abs(lock));
     float light = (0.70 + 0.60 * strands + 0.40 * drift.b) * gap;
-    colour = vec4(mix(dull, bright, strands) * light * mix(COOL, WARM, ends), least_cover < 0.5 ? cover : 1.0);   // with one sample a pixel there is hair or none
+    colour = vec4(mix(dull, bright, strands) * light, least_cover < 0.5 ? cover : 1.0);   // with one sample a pixel there is hair or none
 }

@@ -10,7 +10,7 @@ from agentface.head.model import HeadModel
 from agentface.head.ring_names import LidRing
 from agentface.view.hair.ribbons import Hairs, Roots, roots_along, roots_in_front, unit_rows
 
-_BROW_HAIRS = 860
+_BROW_HAIRS = 700
 _PALEST = 1.2
 """By how much of the colour the few palest hairs of brows are lighter."""
 _UPPER_LASHES, _LOWER_LASHES = 90, 46
@@ -19,7 +19,7 @@ _FLAT_RISE, _TAPERED, _INWARD = 0.5, 0.62, 1.0
 loses; the exponent with which hairs gather at the inner end."""
 _BROW_OPACITY, _INNER_OPACITY = (0.85, 1.0), 0.55
 """And its part at the inner end, where brows begin softly."""
-_BROW_RADII = 0.00008, 0.00012
+_BROW_RADII = 0.00009, 0.00013
 """Metres of half a hair's width."""
 _LEANING = 30
 """Degrees by which the outermost hairs turn to the brow's middle line."""

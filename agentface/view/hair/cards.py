@@ -25,7 +25,7 @@ _TO_THE_FRONT = 1.25
 """The exponent with which they gather at the face."""
 _JITTER = 0.8
 """Of the space between cards, by which they stand off their places."""
-_OVERLAP, _WIDTHS, _NARROWEST, _NARROWED = 1.85, (0.80, 1.30), 0.0022, 0.40
+_OVERLAP, _WIDTHS, _NARROWEST, _NARROWED = 1.76, (0.80, 1.25), 0.0022, 0.40
 """A card's width in spaces between cards, and how it differs; its least half width, metres; the part its end loses."""
 _SHORTEST, _LONGEST, _MOSTLY_LONG, _ALIKE = 0.88, 1.04, 0.6, 0.35
 """Parts of the whole length, and the exponent of chance between them; up to where along it all lie side by side."""
