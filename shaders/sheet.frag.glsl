@@ -1,7 +1,7 @@
 #version 330 core
 centroid in vec3 dull, bright;
 centroid in vec4 strand;   // across in locks, along 0..1, light, a number of its own
-centroid in vec3 drift;    // how hairs wander, gaps deepen and light changes
+centroid in vec3 drift;    // how hairs wander, the front edge does and light changes
 in vec2 spread;            // the first two of strand, whose differences from pixel to pixel hold at edges, too
 out vec4 colour;           // its opacity becomes coverage of the samples
 
@@ -11,12 +11,14 @@ const float HAIRS = 64.0;      // that are seen in a lock
 const float CARDS = 14.0;      // the first number of a lock that is a card
 const float CARD_HAIRS = 48.0; // that are seen in a card
 const float WISP = 8.0;        // hairs that keep together
+const float UNEQUAL = 0.45;    // how unequal they are
 const float POINTED = 0.9;     // how far they end in a point
-const float TIP = 0.17;        // of the length, over which hairs end
+const float TIP = 0.19;        // of the length, over which hairs end
 const float ROOT = 0.010;      // of the length, over which they begin
 const float BLUNT = 0.35;      // of its width, with which it does
 const float SHEET_ROOT = 0.2; // of that, for the sheets, through which one would see past the head
 const float EDGE = 3.0;        // hairs a lock's width, over which the sheet's front edge grows dense
+const float GAP = 0.12, GAPS = 0.3;  // how much darker it is between locks, and how soon along them it comes to that
 const float APART = 0.65;      // from here on locks narrow towards their tips
 
 float scattered(float number) {
@@ -37,21 +39,22 @@ float varied(float hairs, float visible) {
 void main() {
     float along = strand.y, number = floor(strand.x), lock = 2.0 * (strand.x - number) - 1.0, own = scattered(3.0 * number + 1.0);
     float card = step(CARDS, strand.x), many = mix(HAIRS, CARD_HAIRS, card);
-    float hairs = many * strand.x + 1.5 * drift.r, wisp = hairs / WISP;
+    // wisps are narrower to one side of a lock
+    float hairs = many * (strand.x + UNEQUAL * (own - 0.5) * (1.0 - lock * lock)) + 1.5 * drift.r, wisp = hairs / WISP;
     vec2 pixel = vec2(many, 1.0) * fwidth(spread) + 1e-4;
     float hair_seen = seen(pixel.x), wisp_seen = seen(pixel.x / WISP), unseen = 1.0 - hair_seen;
     float here = varied(hairs, hair_seen), ends = varied(wisp + 7.0, wisp_seen), point = wisp_seen * abs(2.0 * fract(wisp) - 1.0);
     float narrow = mix(1.4, 0.82, card * smoothstep(0.0, 0.2, along)) - (0.05 + 0.25 * own) * smoothstep(APART, 1.0, along);
     float edge = EDGE * (strand.x - CARDS * card) * (1.2 - along) + 0.8 * along + 1.2 * drift.g;   // fewer hairs frame the face
-    float last = 1.0 - TIP * (0.35 * own + 0.60 * ends * ends + 0.25 * here * here);
+    float last = 1.0 - TIP * (0.35 * own + 0.75 * ends * ends + 0.30 * here * here);
     narrow *= min((last - along) / TIP + mix(1.0, BLUNT, card), 1.0);   // a lock as a whole ends in a point
-    vec4 within = vec4(edge + mix(0.2, -0.1, card) - here, (last - along) / (0.4 * TIP) - POINTED * point, narrow + 0.32 * here - abs(lock), along - ROOT * mix(SHEET_ROOT, 1.0, card) * (1.3 * here + 0.6 * ends - 0.4));
+    vec4 within = vec4(edge + mix(0.2, -0.1, card) - here, (last - along) / (0.4 * TIP) - POINTED * (0.5 + 0.9 * ends) * point, narrow + 0.32 * here - abs(lock), along - ROOT * mix(SHEET_ROOT, 1.0, card) * (1.3 * here + 0.6 * ends - 0.4));
     vec4 soft = vec4(min(EDGE / many * pixel.x, 0.3) + 0.5 * unseen, pixel.y / (0.4 * TIP) + POINTED * min(2.0 / WISP * pixel.x, 0.5) + 0.1 * unseen, 2.0 / many * pixel.x + 0.3 * unseen, pixel.y + (0.3 + unseen) * ROOT);
     vec4 covered = clamp(0.5 + within / soft, 0.0, 1.0);
     float cover = min(min(covered.x, covered.y), min(covered.z, covered.w));
     if (cover < least_cover) discard;
-    float strands = 0.45 * ends + 0.55 * here;
-    float gap = 1.0 - (0.04 + 0.16 * own) * smoothstep(0.2, 1.0, abs(lock)) * (0.9 + drift.g);
-    float light = (0.74 + 0.52 * strands + 0.12 * drift.b) * gap;
+    float strands = 0.35 * ends + 0.65 * here;
+    float gap = 1.0 - min(GAPS * along, GAP) * smoothstep(0.2, 1.0, abs(lock));
+    float light = (0.70 + 0.60 * strands + 0.40 * drift.b) * gap;
     colour = vec4(mix(dull, bright, strands) * light, least_cover < 0.5 ? cover : 1.0);   // with one sample a pixel there is hair or none
 }

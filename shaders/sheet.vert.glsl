@@ -20,6 +20,9 @@ uniform float gloss;
 
 const float JITTER = 0.11;    // by how much a strand's highlights are shifted to and fro
 const vec2 SHINES = vec2(0.65, 1.85);  // how much of the highlights dull and bright hairs have
+const vec2 DISORDER = vec2(0.0, 0.13);  // of the length: up to where roots rise at all angles, and from where they lie alike
+const float SCATTER = 0.45;   // what they send back of the highlights, as a part of what they scatter
+const vec3 COOL = vec3(0.97, 1.0, 1.04), WARM = vec3(1.04, 1.0, 0.95);   // their own hues
 const float TURNED = -0.35;   // cosine; at its outline hair is still seen from outside
 
 void main() {
@@ -30,10 +33,13 @@ void main() {
     vec3 base = hair_colour * mix(0.95, 1.7, smoothstep(0.1, 1.0, sheet.y)) * (0.94 + 0.12 * fract(sheet.w * 5.3));
     float shift = 0.12 * (own - 0.5);
     HairLight back = hair_lights(base, along, n, view, gloss, shift - JITTER, sheet.z), ahead = hair_lights(base, along, n, view, gloss, shift + JITTER, sheet.z);
-    dull = finish(back.body + SHINES.x * back.shine);
-    bright = finish(ahead.body + SHINES.y * ahead.shine);
+    float order = smoothstep(DISORDER.x, DISORDER.y, sheet.y);
+    back.shine = mix(SCATTER * back.body, back.shine, order);
+    ahead.shine = mix(SCATTER * ahead.body, ahead.shine, order);
+    dull = COOL * finish(back.body + SHINES.x * back.shine);
+    bright = WARM * finish(ahead.body + SHINES.y * ahead.shine);
     strand = sheet;
     spread = sheet.xy;
-    drift = noise(vec3(0.23 * sheet.x, 0.9 * sheet.y, 0.31 * sheet.w)).rgb - 0.5;
+    drift = noise(vec3(0.23 * sheet.x, 1.7 * sheet.y, 0.31 * sheet.w)).rgb - 0.5;
     gl_Position = view_projection * vec4(placed, 1.0);
 }

@@ -44,7 +44,7 @@ void main() {
     vec3 round = normalize(n + 0.45 * solid * side * sideways);
     HairLight light = hair_lights(base, along, round, view, gloss, 0.16 * (own - 0.5), stroke.z);
     dull = finish(light.body + 0.35 * light.shine);
-    bright = finish(light.body + 1.4 * light.shine);
+    bright = finish(light.body + mix(0.8, 1.4, solid) * light.shine);   // single hairs would shine white
     float opacity = blended(paint.a * (1.0 - 0.7 * smoothstep(0.75, 1.0, t)) * min(1.0, 0.45 + 8.0 * t) / widened);
     place = vec4(side, t, own, mix(opacity, clamp(2.5 * pixels / streaks, 0.15, 1.0), solid));
     gl_Position = view_projection * vec4(placed, 1.0);

@@ -22,10 +22,10 @@ from agentface.view.skin.pores import pore_volume
 from agentface.view.skin.wrinkle_atlas import skin_grain
 from agentface.view.skin.wrinkle_patches import Relief
 
-SOFTNESSES = 0.35, 0.0
+SOFTNESSES = 0.20, 0.0
 """Of brows and lashes: how they shine."""
 _SEED = 20
-_BROW_TINT = 0.55
+_BROW_TINT = 0.66
 _LIP_CUTS = 2
 
 

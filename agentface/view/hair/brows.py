@@ -10,19 +10,24 @@ from agentface.head.model import HeadModel
 from agentface.head.ring_names import LidRing
 from agentface.view.hair.ribbons import Hairs, Roots, roots_along, roots_in_front, unit_rows
 
-_BROW_HAIRS = 520
+_BROW_HAIRS = 700
 _PALEST = 1.2
 """By how much of the colour the few palest hairs of brows are lighter."""
 _UPPER_LASHES, _LOWER_LASHES = 90, 46
-_FLAT_RISE, _TAPERED, _INWARD = 0.5, 0.62, 1.12
+_FLAT_RISE, _TAPERED, _INWARD = 0.5, 0.62, 1.0
 """How high a straight brow lies between the ends and the middle of the arch; the part of its height that its tail
 loses; the exponent with which hairs gather at the inner end."""
-_BROW_OPACITY = 0.75, 0.95
-_STRAY, _STRAYING = 0.24, 1.5
+_BROW_OPACITY, _INNER_OPACITY = (0.85, 1.0), 0.55
+"""And its part at the inner end, where brows begin softly."""
+_BROW_RADII = 0.00009, 0.00013
+"""Metres of half a hair's width."""
+_LEANING = 30
+"""Degrees by which the outermost hairs turn to the brow's middle line."""
+_STRAY, _STRAYING = 0.10, 1.1
 """The part of the hairs that stand anywhere at the inner end, none at the tail; half heights up to which they do."""
 _LASH_LINE, _GATHERED = 0.030, 0.9
 """Metres of lid that lashes stand on; how far the tips of a bundle come together."""
-_UPPER_UNEQUAL, _LOWER_UNEQUAL = (0.55, 1.15), (0.92, 1.12)
+_UPPER_UNEQUAL, _LOWER_UNEQUAL = (0.55, 1.15), (0.96, 1.12)
 """How long the bundles of the upper and lower lashes are."""
 _REFERENCE_EYES = 0.0525
 """The distance between the pupils, metres, that the sizes below are meant for."""
@@ -77,17 +82,17 @@ def brow_hairs(model: HeadModel, normals: Floats, look: HairLook, rng: np.random
     line = BrowLine(model, look.brow_arch)
     count = round(_BROW_HAIRS * look.brow_density)
     near = _brow_triangles(model)
-    places, flats = [], []
+    places, flats, clear = [], [], []
     for side in (1.0, -1.0):
         s, off = rng.random(count) ** _INWARD, rng.normal(0, 0.45, count).clip(-1, 1)
         stray = rng.random(count) < _STRAY * (1 - s)
         off = np.where(stray, rng.uniform(-_STRAYING, _STRAYING, count), off)
+        clear.append(_INNER_OPACITY + (1.0 - _INNER_OPACITY) * np.minimum(4 * s, 1))
         x, y = line.place(s)
         places.append(np.stack([side * x, y + off * line.half_height(s)], axis=1))
         # hairs stand up at the inner end and lie along the brow farther out, leaning to its middle line
-        lean = np.radians(
-            30 * np.exp(-6 * s) + 14 * (1 - s) - 22 * off.clip(-1, 1) * (s > 0.2) + rng.normal(0, 8, count)
-        )
+        inward = -_LEANING * off.clip(-1, 1) * np.minimum(4 * s, 1)
+        lean = np.radians(34 * np.exp(-7 * s) + 7 * (1 - s) + inward + rng.normal(0, 6, count))
         length = (
             0.0064 * line.scale * (0.6 + 0.5 * rng.random(count)) * (0.7 + 0.3 * np.minimum(5 * s, 1)) * (1 - 0.25 * s)
         )
@@ -103,16 +108,16 @@ def brow_hairs(model: HeadModel, normals: Floats, look: HairLook, rng: np.random
     x = np.cross(up, n)
     lift = np.array([0.0007, 0.0005]) * line.scale * (0.5 + rng.random((2 * count, 1)))
     curves = flat[..., :1] * x[:, None] + flat[..., 1:] * up[:, None] + lift[..., None] * n[:, None]
-    radii = (0.00011 + 0.00008 * rng.random(2 * count)) * line.scale
-    paint = np.column_stack(
-        [_shades(look.brow_colour, 0.4 * look.grey, 2 * count, rng), rng.uniform(*_BROW_OPACITY, 2 * count)]
-    )
+    radii = rng.uniform(*_BROW_RADII, 2 * count) * line.scale
+    opacity = rng.uniform(*_BROW_OPACITY, 2 * count) * np.concatenate(clear)
+    paint = np.column_stack([_shades(look.brow_colour, 0.4 * look.grey, 2 * count, rng), opacity])
     return Hairs.grown(roots, (model.vertices, normals), curves[:, 0], curves[:, 1], radii, paint)
 
 
 def lash_hairs(model: HeadModel, normals: Floats, look: HairLook, rng: np.random.Generator) -> Hairs:
     """Upper and lower lashes of both eyes."""
     length = 0.001 * look.lash_length_mm
+    rng = rng.spawn(1)[0]  # the same lashes however many hairs brows have
     parts = [
         _lash_row(model, normals, side, upper=upper, count=count, length=length * share, rng=rng)
         for side in SIDES

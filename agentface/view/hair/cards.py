@@ -23,9 +23,9 @@ _CARDS, _ROWS = 36, 25
 _ACROSS = np.array([-1.0, 1.0])
 _TO_THE_FRONT = 1.25
 """The exponent with which they gather at the face."""
-_JITTER = 0.5
+_JITTER = 0.8
 """Of the space between cards, by which they stand off their places."""
-_OVERLAP, _WIDTHS, _NARROWEST, _NARROWED = 1.85, (0.85, 1.2), 0.0022, 0.40
+_OVERLAP, _WIDTHS, _NARROWEST, _NARROWED = 1.76, (0.80, 1.25), 0.0022, 0.40
 """A card's width in spaces between cards, and how it differs; its least half width, metres; the part its end loses."""
 _SHORTEST, _LONGEST, _MOSTLY_LONG, _ALIKE = 0.88, 1.04, 0.6, 0.35
 """Parts of the whole length, and the exponent of chance between them; up to where along it all lie side by side."""
@@ -37,8 +37,9 @@ _GOLDEN = 0.618
 """Turns from the height of a card to the next one's, so that neighbours lie apart."""
 _SINKING = 0.05, 0.22
 """Metres from the root between which they come to do so: the outline of the crown is one."""
-_APART = 0.0028
-"""Metres by which the highest lie over the lowest from the root on, so that none cut through others."""
+_APART, _APART_FROM = 0.0026, 0.040
+"""Metres by which the highest lie over the lowest, so that none cut through others, and from the root to there: where
+the crown is seen against the light nothing is seen between them."""
 _WISPS, _WISP_WIDTH, _WISP_DRIFT = 4, 0.7, 1.2
 """Every how many cards at the face one is a wisp; how wide, and how far off its way, beside the others."""
 _TUCKED = 0.58
@@ -65,6 +66,10 @@ _EVEN = 6
 """Smoothings of the way across them, so that none folds over."""
 _ROOT_LIGHT = 0.60
 """At the root, as a part of that at the end."""
+
+
+_SHADED, _LAYERED = 0.14, 0.5
+"""How much light the highest keep off the lowest, and up to which part of the length it comes to that."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -123,7 +128,7 @@ def _lying(
     """``(N, R, 3)`` m: the middle line of each card, off the ``hull`` and a little off its course."""
     t, along, middle = course.t, course.along, course.middle
     tucked = _TUCKED + (1.0 - _TUCKED) * smoothstep(0.0, _AT_FACE, course.place)[:, None]
-    apart = _APART * layer * smoothstep(0.0, 0.015, along)
+    apart = _APART * layer * smoothstep(0.0, _APART_FROM, along)
     sunk = (1.0 - _LOW) * (1.0 - layer) * smoothstep(*_SINKING, along)
     whole = thickness * tucked * risen(along) * volume(hull, middle)
     height = whole * (1.0 - sunk) + apart
@@ -181,7 +186,8 @@ def _woven(hull: Hull, course: _Course, points: Doubles, layer: Doubles, rng: np
     twist = half * _TWIST * rng.normal(size=(_CARDS, 1)) * smoothstep(0.25, 0.7, t)
     rise = hull.height(points)[:, None] - hull.height(edges) + _ACROSS[:, None] * twist[:, None]
     edges = edges + rise[..., None] * hull.outward(edges)
-    light = (0.86 + 0.14 * layer) * (_ROOT_LIGHT + (1.0 - _ROOT_LIGHT) * smoothstep(0.0, 0.30, t))
+    apart = smoothstep(0.0, _LAYERED, t)
+    light = (1.0 - _SHADED * (1.0 - layer) * apart) * (_ROOT_LIGHT + (1.0 - _ROOT_LIGHT) * smoothstep(0.0, 0.30, t))
     own = _OWN * rng.random(_CARDS)
     grown = []
     for k, grid in enumerate(edges):

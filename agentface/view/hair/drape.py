@@ -22,10 +22,10 @@ _TURNS_DEG = (54.0, 186.0)
 _ARC, _FALL = 24, 14
 _SMOOTHINGS, _PULLS, _LAST_SMOOTHINGS = 8, 10, 30
 """Hair hangs taut over what stands out: smoothed, and pushed out of the head again, so many times."""
-_WHORL = 0.006
+_WHORL = 0.0025
 """Metres round the whorl where hair starts."""
-_BESIDE = 0.0008
-"""Metres from the parting where hair starts."""
+_BESIDE, _CROSSED = 0.0008, 2.5
+"""Metres from the parting where hair starts, and by how much of that less at its end, where it is combed over it."""
 _ZIGZAG = ((0.0013, 240.0, 0.0), (0.0007, 610.0, 1.3))
 """Waves of the parting, which is no line: metres to both sides, radians a metre, where each starts."""
 _FRAMING_DEG, _FRAMING_REACH_DEG = 7.0, 24.0
@@ -82,6 +82,6 @@ def _roots(model: HeadModel, look: HairLook, hull: Hull, sign: float) -> Doubles
     chosen = line[np.linspace(0, len(line) - 1, count).astype(int)]
     fan = np.radians(np.linspace(90.0, 190.0, COLUMNS - count))
     round_whorl = chosen[-1] + _WHORL * np.stack([sign * np.sin(fan), 0 * fan, np.cos(fan)], axis=1)
-    chosen[:, 0] += sign * _BESIDE
+    chosen[:, 0] += sign * _BESIDE * (1.0 - _CROSSED * np.linspace(0.0, 1.0, count) ** 3)
     chosen[:, 0] += sum(far * np.sin(turns * chosen[:, 2] + start) for far, turns, start in _ZIGZAG)
     return np.concatenate([chosen, round_whorl])

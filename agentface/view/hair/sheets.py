@@ -24,12 +24,14 @@ _LAYER_ON_TOP, _LAYER, _TOP, _SHARE = 0.82, 0.22, 2.0, 0.97
 head; how long they are beside the cards."""
 _LIGHT_AT_ROOT, _LIGHT = 0.72, 0.62
 """How much light the cards let through to them."""
-_AT_PARTING, _RISE = 0.42, 0.055
+_AT_PARTING, _RISE = 0.15, 0.048
 """How high hair lies where it starts, as a part of its thickness, and the metres over which it rises from there."""
 _EDGE_SHADES = ((0.60, 0.009), (0.42, 0.0195))
 """How much light the front edge keeps off the skin below it, and within how many metres: close by, and as a whole."""
 _EDGE_POINTS, _EDGE_COLUMNS = 80, 4
 """Of the edge, and how many columns of a sheet behind it keep light off the skin below them."""
+_ROUND_REACH = 0.025
+"""Metres from where hair starts over which it comes to face its own way, not that of the head's round."""
 _AT_SIDES, _SIDES = 0.62, 0.075
 """How thick hair lies beside the head as a part of that on top, and metres over the centre of the head to there."""
 _ROOTWARD = 0.45
@@ -62,7 +64,12 @@ class Sheet:
         along = unit_rows(np.gradient(self.points.astype(np.float64), axis=1))
         across = np.gradient(self.points.astype(np.float64), axis=0)
         normal = unit_rows(np.cross(across, along))
-        normal *= np.sign((normal * (self.points - self.centre)).sum(2, keepdims=True))
+        away = unit_rows(self.points - self.centre)
+        normal *= np.sign((normal * away).sum(2, keepdims=True))
+        # where it parts both sides face alike, however they rise
+        way = np.linalg.norm(np.diff(self.points, axis=1, prepend=self.points[:, :1]), axis=2).cumsum(axis=1)
+        at_root = np.exp(-way / _ROUND_REACH)[..., None]
+        normal = unit_rows((1.0 - at_root) * normal + at_root * away)
         rows = np.concatenate([self.points, along, normal, self.places], axis=2)
         columns, count = self.points.shape[:2]
         i, j = np.meshgrid(np.arange(columns - 1), np.arange(count - 1), indexing="ij")
