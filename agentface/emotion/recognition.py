@@ -1,7 +1,7 @@
 """The emotions that contractions show: the fuzzy rules, backwards.
 
 Of the faces that the rules make of one or two emotions, the nearest one; then its two intensities are moved as long as
-that comes nearer.
+that comes nearer, and one that makes no difference is left out.
 """
 
 from __future__ import annotations
@@ -65,4 +65,6 @@ def _nearest(
             away = ((inference.course(tried)[:, chosen] - asked) ** 2).sum(axis=1)
             nearer = away < best
             states[nearer], best[nearer] = tried[nearer], away[nearer]
-    return states
+    alone = states * (states == states.max(axis=1, keepdims=True))
+    away = ((inference.course(alone)[:, chosen] - asked) ** 2).sum(axis=1)
+    return np.where((away <= best)[:, None], alone, states)

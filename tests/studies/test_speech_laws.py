@@ -101,7 +101,7 @@ def test_tissue_reaches_the_closures(face):
     for frame in range(36):
         geometry, time = spoken.step(1 / 60), (frame + 1) / 60 - 0.1
         measures = ruler.measure(geometry, bite=0.4 <= time <= 0.5)
-        if 0.15 <= time <= 0.25:
+        if 0.12 <= time <= 0.28:
             gaps.append(measures.gap)
         bites.append(measures.bite)
     assert min(gaps) <= speech_laws.SHUT_MM

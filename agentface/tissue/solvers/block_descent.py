@@ -20,7 +20,7 @@ _RESTLESS_MM, _FAR_MM, _MORE = 0.0015, 0.007, 2
 _RESTLESS, _FAR = 1.7e-5, 1e-4
 """1/mm: the same, times the square of how far the muscles move the tissue, where that is more: what the responses miss
 is of the second order."""
-_LONGER = 1.9
+_LONGER = 1.8
 """Of Newton's step a column: frames that lie near to each other bear longer steps than a search from afar."""
 _EVERY = 1.0
 """mm2: marks a batch that must have a turn."""
