@@ -15,7 +15,7 @@ VIEWS: dict[str, tuple[float, float]] = {"front": (0.0, 2.0), "three-quarter": (
 
 _FIELD_OF_VIEW = np.radians(18.0)
 _HEAD_IN_PICTURE, _DEPTH_IN_PICTURE = 0.76, 0.95
-"""Of the picture's height, the head from the chin to the hair; of a narrow one's width, the head from its front to its back."""
+"""Of the picture's height, the head from the chin to the hair; of a narrow one's width, from its front to its back."""
 _CROWN_OVER_MENTON = 1.06
 _NARROWEST = 0.80
 _HIGHEST = np.radians(85.0)

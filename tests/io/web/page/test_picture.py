@@ -128,4 +128,4 @@ def test_nothing_is_behind_a_transparent_face(stages, files):
     model = settled("amber")[0].model
     assert (alpha[over_the_face(model, "front")] == 255).mean() > 0.9
     # hair and shirt hide as much as skin does: little of the head is half clear, feathered tips of hair above all
-    assert ((alpha > 0) & (alpha < 255)).sum() < 0.065 * (alpha == 255).sum()
+    assert ((alpha > 0) & (alpha < 255)).sum() < 0.075 * (alpha == 255).sum()
