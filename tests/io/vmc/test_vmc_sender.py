@@ -240,7 +240,7 @@ class ThereAndBack:
         ({"surprise": 0.5}, 0.05),
         ({"anger": 1.0}, 0.05),
         ({"sadness": 0.6}, 0.1),
-        ({"happiness": 0.4, "surprise": 0.3}, 0.22),  # of two, the rules make another face than of the one and the other
+        ({"happiness": 0.4, "surprise": 0.3}, 0.22),  # the rules make another face of two than of each
     ],
 )
 def test_presets_come_back(avatar, names, asked, tolerance):
