@@ -11,13 +11,17 @@ from agentface.view.parts.teeth import crown_places, meeting_places, tones
 from tests.heads import head_model
 
 
+def row_of(face, row):
+    """The places of a row's vertices, its triangles, and how far each vertex is of a tooth."""
+    mesh = head_model(face).parts[row]
+    return mesh.attributes["POSITION"], mesh.triangles, mesh.attributes["_MATERIAL"][:, 0] / 255.0
+
+
 @pytest.mark.parametrize("face", face_names())
 @pytest.mark.parametrize("row", ["teeth_upper", "teeth_lower"])
 def test_each_of_fourteen_teeth_spans_its_own_width_and_height(face, row):
-    mesh = head_model(face).parts[row]
-    tooth = mesh.attributes["_MATERIAL"][:, 0] / 255.0
-    positions = mesh.attributes["POSITION"]
-    places = crown_places(positions, mesh.triangles, tooth)
+    positions, triangles, tooth = row_of(face, row)
+    places = crown_places(positions, triangles, tooth)
     assert (places[tooth < 0.5] == 0).all()
     assert np.abs(places[:, 0]).max() <= 1
     assert 0 <= places[:, 1].min() <= places[:, 1].max() <= 1
@@ -37,11 +41,9 @@ def test_each_of_fourteen_teeth_spans_its_own_width_and_height(face, row):
 @pytest.mark.parametrize("face", face_names())
 @pytest.mark.parametrize("row", ["teeth_upper", "teeth_lower"])
 def test_incisors_meet_in_the_middle_of_the_face(face, row):
-    mesh = head_model(face).parts[row]
-    tooth = mesh.attributes["_MATERIAL"][:, 0] / 255.0
-    positions = mesh.attributes["POSITION"]
-    met = meeting_places(positions, mesh.triangles, tooth)
-    own = crown_places(positions, mesh.triangles, tooth)
+    positions, triangles, tooth = row_of(face, row)
+    met = meeting_places(positions, triangles, tooth)
+    own = crown_places(positions, triangles, tooth)
     np.testing.assert_array_equal(met[:, 1], own[:, 1])
     front = (tooth > 0.5) & (positions[:, 2] > positions[tooth > 0.5, 2].max() - 0.004)
     at_middle, clear = np.abs(positions[:, 0]) < 0.0003, np.abs(np.abs(positions[:, 0]) - 0.003) < 0.001
@@ -51,13 +53,11 @@ def test_incisors_meet_in_the_middle_of_the_face(face, row):
 
 @pytest.mark.parametrize("row", ["teeth_upper", "teeth_lower"])
 def test_canines_are_darkest_of_the_front_teeth_and_each_tooth_is_of_one_tone(row):
-    mesh = head_model("amber").parts[row]
-    tooth = mesh.attributes["_MATERIAL"][:, 0] / 255.0
-    tone = tones(mesh.attributes["POSITION"], mesh.triangles, tooth)
+    positions, triangles, tooth = row_of("amber", row)
+    tone = tones(positions, triangles, tooth)
     assert (tone[tooth < 0.5] == 0).all()
     assert len(np.unique(tone[tooth > 0.5])) == 14
-    aside = mesh.attributes["POSITION"][:, 0]
-    middle = (tooth > 0.5) & (np.abs(aside) < 0.002)
+    middle = (tooth > 0.5) & (np.abs(positions[:, 0]) < 0.002)
     assert tone[middle].max() < 0.5 < tone.max()
 
 

@@ -135,15 +135,8 @@ def _lying(
     height = height - _TURNED_IN * rng.random((_CARDS, 1)) ** 2 * smoothstep(0.75, 1.0, t) ** 1.5
     out = hull.outward(middle)
     across = unit_rows(np.cross(np.gradient(middle, axis=1), out))
-    turn = (
-        2.0
-        * np.pi
-        * (
-            along / rng.uniform(*_WAVE_LENGTH, (_CARDS, 1))
-            + _ROLL * course.place[:, None]
-            + _OUT_OF_STEP * rng.random((_CARDS, 1))
-        )
-    )
+    waves = along / rng.uniform(*_WAVE_LENGTH, (_CARDS, 1))
+    turn = 2.0 * np.pi * (waves + _ROLL * course.place[:, None] + _OUT_OF_STEP * rng.random((_CARDS, 1)))
     grown = look.curl * _WAVE * np.clip(along / _WAVY, 0.0, 1.0)
     drift = _DRIFT * np.where(course.wisps(), _WISP_DRIFT, 1.0) * rng.normal(size=_CARDS).clip(-1.3, 1.3)
     sway = grown * rng.uniform(0.4, 1.0, (_CARDS, 1)) * np.sin(turn) + drift[:, None] * t**1.5
