@@ -15,10 +15,10 @@ uniform vec3 lower_lid;
 uniform vec2 corners;       // x of the canthi in radii, the smaller first
 const vec3 CARUNCLE = vec3(0.50, 0.21, 0.18);
 const vec3 FLUSHED = vec3(0.90, 0.60, 0.52);   // of the white's colour, what the corners leave
-const vec2 LAMP = vec2(0.05, 0.16), WINDOW = vec2(0.10, 0.15);   // half the sides of what the cornea mirrors
-const float LAMP_SOFT = 0.09, WINDOW_SOFT = 0.05, BAR = 0.018;
+const vec2 LAMP = vec2(0.02, 0.045), WINDOW = vec2(0.10, 0.15);   // half the sides of what the cornea mirrors
+const float LAMP_SOFT = 0.16, WINDOW_SOFT = 0.05, BAR = 0.018;
 const float LAMP_BRIGHT = 9.0, WINDOW_BRIGHT = 2.2, SKY_BRIGHT = 0.7;
-const float WHITE_LIT = 0.80;  // of the light, what brow and nose leave
+const float WHITE_LIT = 0.72;  // of the light, what brow and nose leave
 const float TEARS = 0.085;     // of the light, what the tears' edge along the lower lid sends back
 
 // A picture with soft, round corners in the mirror.
@@ -46,9 +46,9 @@ void main() {
     white = mix(white, CARUNCLE, flesh);
     // the lids keep light off, most the upper one with its lashes; the globe turns away to the corners
     float shade = mix(0.12, 1.0, smoothstep(0.0, 0.32, over)) * mix(0.66, 1.0, smoothstep(0.05, 0.60, over)) * mix(0.60, 1.0, smoothstep(-0.04, 0.20, under));
-    shade *= mix(0.34, 1.0, max(smoothstep(-0.05, 0.50, from_corner), 0.55 * flesh));
+    shade *= mix(0.46, 1.0, max(smoothstep(-0.05, 0.50, from_corner), 0.55 * flesh));
     float turned_away = smoothstep(0.70, 0.98, abs(q.x)) * (1.0 - flesh);
-    shade *= 1.0 - 0.55 * turned_away;
+    shade *= 1.0 - 0.40 * turned_away;
     white *= mix(vec3(1.0), FLUSHED, max((1.0 - flesh) * smoothstep(0.55, 0.0, from_corner), turned_away));
     vec3 ns = normalize(mix(n, mat3(head)[2], 0.15));
     n = normalize(n + flesh * (mat3(head) * vec3(0.9 * sign(q.x) * (0.12 - nasal) * 6.0, -5.0 * (q.y + 0.10), 0.0)));

@@ -11,7 +11,7 @@ out vec4 colour;
 uniform vec3 sclera;
 
 const vec3 FLUSHED = vec3(0.90, 0.54, 0.46);   // of the white's colour
-const float NEAR = 0.25, FAR = 0.09;           // of the light, what arrives at the margin and behind
+const float NEAR = 0.34, FAR = 0.16;           // of the light, what arrives at the margin and behind
 
 void main() {
     vec3 n = normalize(normal), light = hemisphere(n);

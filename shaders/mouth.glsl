@@ -6,11 +6,11 @@ uniform vec4 mouth_opening;  // heights of the upper and the lower lip's edge, h
 const float LIP_SHADES = 0.0060;   // metres from a lip's edge to where it shades teeth no more, if the mouth is open wide
 const float LOWER_CLEAR = 0.45;    // how much clearer the edge of the lower lip is, which has light above it
 const vec3 LIP_GLOW = vec3(0.165, 0.082, 0.074);   // of the light on lips, what goes through them to where they shade themselves
-const float CHEEKS = 0.14;   // of the light on the teeth, what they send to the cheeks beside them
+const float CHEEKS = 0.26;   // of the light on the teeth, what they send to the cheeks beside them
 const float ROUND = 0.16;    // of the key light on an open mouth, what goes round in it from wall to wall
 const float FADES_FROM = 0.003, FADES_OVER = 0.010;   // metres behind the lips, where the walls begin to close off the light, and how fast
-const float THROAT = 0.03;   // of the light, what is left however far behind
-const float BOW_COUNTS = 0.8;   // of how far the corners lie behind the middle: the light that passes there has passed the cheeks
+const float THROAT = 0.22;   // of the light, what is left however far behind
+const float BOW_COUNTS = 0.5;   // of how far the corners lie behind the middle: the light that passes there has passed the cheeks
 
 // How far behind the lips a place is.
 float mouth_depth(vec3 at) {

@@ -14,7 +14,7 @@ uniform vec3 teeth;
 uniform float mouth_pursed;   // how much narrower than at rest the mouth is, 1 from a tenth on
 uniform float shaded;   // how much less light the lower jaw gets, in the lips' shadow
 
-const vec3 GUM = vec3(0.34, 0.175, 0.16), TONGUE = vec3(0.38, 0.165, 0.15);
+const vec3 GUM = vec3(0.34, 0.175, 0.16), TONGUE = vec3(0.46, 0.19, 0.17);
 const vec3 WALLS = vec3(0.50, 0.29, 0.24);   // the colour of what they send back
 const vec3 BEHIND_LIPS = vec3(0.86, 0.60, 0.52);
 const vec3 OLD = vec3(0.84, 0.76, 0.62), NECK = vec3(0.93, 0.82, 0.69);   // of the colour of the whitest front tooth's middle
@@ -23,7 +23,7 @@ const vec3 GAP = vec3(0.42, 0.31, 0.25);     // of the light on a tooth, what is
 const vec3 LIP_SHADE = vec3(0.30, 0.23, 0.20);   // of the light on a tooth that a lip lies on: what it lets through is red
 const float GAP_FROM = 0.79, EDGE_GAP = 0.24;    // across, where teeth begin to shade each other; how much sooner at their round corners
 const float LIT = 0.48;   // of the key light on enamel, what does not go on into the tooth
-const float TURNED = 0.35;   // of the light in the mouth, what arrives at a face that is turned away from the lips
+const vec2 TURNED = vec2(0.35, 0.75);   // of the light in the mouth, what arrives at a tooth or gum that is turned away from the lips, and at the tongue, whose palate sends some down
 
 // The colour of a tooth; the gum lies on it in a bow.
 vec3 enamel(out float gum) {
@@ -47,7 +47,7 @@ void main() {
     vec3 albedo = matter.x * tooth + (1.0 - matter.x - tongue) * GUM + tongue * TONGUE * (1.0 - 0.12 * groove) * mix(0.72, 1.0, smoothstep(-0.006, 0.0, reach.z));
     albedo *= mix(0.88 + 0.24 * grain.r, 0.98 + 0.04 * grain.r, enamelled);
     float rough = mix(0.32, 0.24, enamelled), sky_part = min(reach.x * mix(2.0 - 0.7 * tongue, 1.9, enamelled), 1.0), key_part = reach.y;   // teeth light each other
-    float inside = smoothstep(-0.006, 0.0, reach.z), towards_lips = mix(TURNED, 1.0, max(dot(n, head[2].xyz), 0.0));
+    float inside = smoothstep(-0.006, 0.0, reach.z), towards_lips = mix(mix(TURNED.x, TURNED.y, tongue), 1.0, max(dot(n, head[2].xyz), 0.0));
     sky_part *= mix(1.0, towards_lips, inside);
     // what the walls send back is red and dies away behind
     vec3 walls = WALLS * sky_part * inside * exp(-reach.z / 0.016);

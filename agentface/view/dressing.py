@@ -12,7 +12,7 @@ from agentface.head.look import HairLook, Look
 from agentface.head.model import HeadModel
 from agentface.head.skin_image import skin_image
 from agentface.view.gl.noise import noise_volume
-from agentface.view.hair.brows import BrowLine, brow_hairs, lash_hairs
+from agentface.view.hair.brows import BrowLine, brow_hairs, lash_hairs, lash_line
 from agentface.view.hair.grown import GrownHair
 from agentface.view.hair.hairline import Hairline, hair_shade, hidden
 from agentface.view.hair.ribbons import Hairs
@@ -82,6 +82,7 @@ def _covered(model: HeadModel, look: HairLook) -> Floats:
     tint = _BROW_TINT * look.brow_density * BrowLine(model, look.brow_arch).density(model.vertices)
     if look.style != "none":
         tint = np.maximum(tint, hidden(model, Hairline(model, look.hairline), look))
+    tint = np.maximum(tint, lash_line(model))
     return np.asarray(np.clip(tint, 0, 1), np.float32)
 
 

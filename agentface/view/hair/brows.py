@@ -13,7 +13,7 @@ from agentface.view.hair.ribbons import Hairs, Roots, roots_along, roots_in_fron
 _BROW_HAIRS = 700
 _PALEST = 1.2
 """By how much of the colour the few palest hairs of brows are lighter."""
-_UPPER_LASHES, _LOWER_LASHES = 90, 46
+_UPPER_LASHES, _LOWER_LASHES = 150, 60
 _FLAT_RISE, _TAPERED, _INWARD = 0.5, 0.62, 1.0
 """How high a straight brow lies between the ends and the middle of the arch; the part of its height that its tail
 loses; the exponent with which hairs gather at the inner end."""
@@ -29,6 +29,8 @@ _LASH_LINE, _GATHERED = 0.030, 0.9
 """Metres of lid that lashes stand on; how far the tips of a bundle come together."""
 _UPPER_UNEQUAL, _LOWER_UNEQUAL = (0.55, 1.15), (0.96, 1.12)
 """How long the bundles of the upper and lower lashes are."""
+_LASH_TINTS = {LidRing.LASHES: (0.75, 0.25), LidRing.EDGE: (0.5, 0.12), LidRing.EDGE + 1: (0.22, 0.0)}
+"""How much of the skin's colour they cover round the upper and the lower row, by ring."""
 _REFERENCE_EYES = 0.0525
 """The distance between the pupils, metres, that the sizes below are meant for."""
 
@@ -142,13 +144,23 @@ def _lash_row(
     together = _GATHERED * _LASH_LINE * (middle - outward)[:, None] / lengths
     fan = (outward - 0.30) * 1.5 + rng.normal(0, 0.16, count)[bundle] + rng.normal(0, 0.05 if upper else 0.10, count)
     fan = (fan[:, None] + together) * (1.0 if side == "l" else -1.0)
-    rise = (-0.20, 0.46) if upper else (-0.10, -0.35)
+    rise = (-0.20, 0.36) if upper else (-0.10, -0.35)
     reach = (0.55, 0.72) if upper else (0.60, 1.05)
     bends = lengths * np.concatenate([0.25 * fan, np.full_like(fan, rise[0]), np.full_like(fan, reach[0])], axis=1)
     tips = lengths * np.concatenate([0.75 * fan, np.full_like(fan, rise[1]), np.full_like(fan, reach[1])], axis=1)
-    radii = (0.00022 if upper else 0.00007) * (0.8 + 0.4 * rng.random(count))
+    radii = (0.00013 if upper else 0.00007) * (0.8 + 0.4 * rng.random(count))
     paint = np.tile([0.008, 0.006, 0.005, 0.9 if upper else 0.55], (count, 1))
     return Hairs.grown(roots, (model.vertices, normals), bends, tips, radii, paint)
+
+
+def lash_line(model: HeadModel) -> Doubles:
+    """``(V,)`` 0..1: how much the roots of lashes, and the shade that they cast, darken each vertex of the lids."""
+    line = np.zeros(len(model.vertices))
+    for rings in model.eyelids.rings.values():
+        for number, (above, below) in _LASH_TINTS.items():
+            line[np.array(rings[number].upper)] = above
+            line[np.array(rings[number].lower[1:-1])] = below
+    return line
 
 
 def joined(parts: list[Hairs]) -> Hairs:
