@@ -6,6 +6,7 @@ import sys
 import pytest
 from hypothesis import settings
 
+from tests.slow import SlowTests
 from tests.tools import pytest_make_collect_report, pytest_runtest_makereport  # noqa: F401  # pytest calls them
 
 # The same examples in every run, and no verdict by the clock: a busy machine fails nothing.
@@ -48,3 +49,18 @@ def pytest_runtest_protocol(item):
 
 def pytest_addoption(parser):
     parser.addoption("--regen-goldens", action="store_true", help="Store what is drawn and computed now as right.")
+    parser.addoption("--note-slow", action="store_true", help="Write down which of the tests that run now are slow.")
+
+
+@pytest.hookimpl(tryfirst=True)  # before those that a mark leaves out are left out
+def pytest_collection_modifyitems(items):
+    slow = SlowTests.noted()
+    for item in items:
+        if slow.has(item.nodeid):
+            item.add_marker(pytest.mark.slow)
+
+
+def pytest_terminal_summary(terminalreporter, config):
+    if config.getoption("--note-slow"):
+        reports = [report for kind in terminalreporter.stats.values() for report in kind if hasattr(report, "duration")]
+        SlowTests.measured((report.nodeid, report.when, report.duration) for report in reports).note()

@@ -11,6 +11,7 @@ from typing import Any
 import pytest
 
 import agentface
+from tests.slow import SlowTests
 
 ROOT = Path(__file__).parent.parent
 SOURCES = sorted(Path(agentface.__file__).parent.rglob("*.py"))
@@ -67,3 +68,13 @@ def test_the_readme_s_first_program_runs():
     exec(program, known)  # noqa: S102  # the project's own words
     assert known["image"].shape == (720, 1280, 3)
     assert known["face"].emotion["happiness"] == pytest.approx(0.8)
+
+
+def test_what_is_noted_as_slow_is_there():
+    missing = [
+        name
+        for name in SlowTests.noted().names
+        for path, _, function in [name.partition("::")]
+        if f"def {function}" not in ((ROOT / path).read_text() if (ROOT / path).exists() else "")
+    ]
+    assert missing == []
