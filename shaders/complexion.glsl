@@ -3,6 +3,7 @@ uniform vec3 skin_tone;
 uniform vec3 lip_tint;
 uniform vec3 hair_colour;
 uniform float shine;
+uniform float light_width;   // 0..1, of all but the key light
 
 const float HIDDEN = 0.875;   // of the skin, under dense hair
 const vec3 WRAP = vec3(0.23, 0.195, 0.175);  // how far light goes round the terminator, by channel
@@ -12,6 +13,7 @@ const vec3 SCATTERED = vec3(0.48, 0.40, 0.34);  // how far light goes through th
 const float FILL_OPEN = 0.4, RIM_OPEN = -0.2;   // how far past what they graze lights without shadows arrive
 const float RIM_GLOSS = 0.6;     // of the sheen that light from behind makes, what fine hairs on the skin leave
 const float CHEEK_HIDES = 0.8;   // of the light from behind, what cheeks keep off the lips
+const float ROUGH_DULLS = 0.5;   // of the sheen of wide light that grazes the skin, what its grain takes
 const vec3 SALLOW = vec3(1.0, 0.99, 0.92);   // where skin is oily it is thick and yellow
 const vec3 LIP_SKIN = vec3(0.77, 0.56, 0.58), UPPER_LIP = vec3(0.81, 0.82, 0.82);
 const float UPPER_DULL = 0.55;   // of the gloss of lips, what the upper one lacks
@@ -67,6 +69,11 @@ float glint(vec3 n, vec3 l, vec3 view, float n_v, float rough, float f0) {
     vec3 h = normalize(l + view);
     float n_l = max(dot(n, l), 0.0);
     return PI * n_l * ggx(max(dot(n, h), 0.0), rough) * visibility(n_l, n_v, 0.9 * rough) * fresnel(f0, max(dot(view, h), 0.0));
+}
+
+// How wide the sources of all but the key light are for dry skin: their gloss lies on its blurred shape, not on each edge.
+float sky_wide(float lip, float moist) {
+    return light_width * (1.0 - max(lip, moist));
 }
 
 // How much of a light without a shadow of its own arrives: what lies round about hides what it cannot see itself.

@@ -42,13 +42,15 @@ void main() {
     albedo = mix(albedo, lip_colour(ambient, complexion.y), 0.86 * lip * (1.0 - mouth));
 
     vec3 view = normalize(towards), wrap = WRAP * (1.0 - 0.6 * mouth), light = hemisphere(soft), occlusion = bled(sky, BOUNCED), key = light_direction[0].xyz;
-    float n_v = max(dot(n, view), 0.02), rough = roughness(complexion.z, lip, moist), f0 = mix(F0.x, F0.y, max(lip, wet));
-    vec3 gloss = hemisphere(reflect(-view, n)) * fresnel(f0, n_v) * 0.5;
+    float wide = sky_wide(lip, moist);
+    vec3 even = normalize(mix(n, soft, wide));
+    float n_v = max(dot(even, view), 0.02), rough = roughness(complexion.z, lip, moist), f0 = mix(F0.x, F0.y, max(lip, wet));
+    vec3 gloss = hemisphere(reflect(-view, even)) * fresnel(f0, n_v) * 0.5 * (1.0 - ROUGH_DULLS * wide);
     for (int i = 1; i < LIGHTS; i++) {
         vec3 l = light_direction[i].xyz;
         vec3 arrives = light_colour[i].rgb * unhidden(soft, l, i == 1 ? FILL_OPEN : RIM_OPEN);
         light += arrives * wrapped(scattered(n, soft, l), i == 1 ? wrap : RIM_WRAP);
-        gloss += arrives * ((i == 1 ? 1.0 : RIM_GLOSS * (1.0 - CHEEK_HIDES * lip)) * glint(n, l, view, n_v, 0.9 * rough, f0));
+        gloss += arrives * ((i == 1 ? 1.0 : RIM_GLOSS * (1.0 - CHEEK_HIDES * lip)) * glint(even, l, view, n_v, i == 1 ? 0.9 * rough : mix(0.9 * rough, 1.0, wide), f0));
     }
     gloss *= 0.8 * shown;
 #ifdef TEXTURED

@@ -35,14 +35,16 @@ void main() {
     float lit = mix(1.0, lit_at_rest, smoothstep(-0.05, 0.30, dot(soft, light_direction[0].xyz)));
     lit = mix(lit, 0.5 * sky, mouth);   // inside, no more than of the sky
     vec3 diffuse = hemisphere(soft) * occlusion + mouth * mouth_round(wall_fade(own_place)) * light_colour[0].rgb + lip_glow(outer * (1.0 - mouth), ambient, lit * clamp(2.0 * dot(soft, light_direction[0].xyz), 0.0, 1.0)), gloss = vec3(0.0);
-    float n_v = max(dot(n, view), 0.02), rough = roughness(complexion.z, lip, moist), f0 = mix(F0.x, F0.y, max(lip, wet));
+    float wide = sky_wide(lip, moist);
+    vec3 even = normalize(mix(n, soft, wide));
+    float n_v = max(dot(even, view), 0.02), rough = roughness(complexion.z, lip, moist), f0 = mix(F0.x, F0.y, max(lip, wet));
     for (int i = 0; i < LIGHTS; i++) {
         float reach = unhidden(soft, light_direction[i].xyz, i == 1 ? FILL_OPEN : RIM_OPEN);
         vec3 l = light_direction[i].xyz, cosines = wrapped(scattered(n, soft, l), i < 2 ? wrap : RIM_WRAP);
         diffuse += light_colour[i].rgb * cosines * (i == 0 ? bled(lit, BLED) * mix(vec3(1.0), occlusion, 0.75) : reach * occlusion);
-        gloss += light_colour[i].rgb * ((i == 0 ? lit : reach * (i == 1 ? 1.0 : RIM_GLOSS * (1.0 - CHEEK_HIDES * lip))) * glint(n, l, view, n_v, 0.9 * rough, f0));
+        gloss += light_colour[i].rgb * ((i == 0 ? lit : reach * (i == 1 ? 1.0 : RIM_GLOSS * (1.0 - CHEEK_HIDES * lip))) * glint(i == 0 ? n : even, l, view, n_v, i < 2 ? 0.9 * rough : mix(0.9 * rough, 1.0, wide), f0));
     }
-    gloss += hemisphere(reflect(-view, n)) * fresnel(f0, n_v) * 0.5;
+    gloss += hemisphere(reflect(-view, even)) * fresnel(f0, n_v) * 0.5 * (1.0 - ROUGH_DULLS * wide);
     float shown = sheen(ambient, mouth, complexion.w, max(0.5 * lip, wet));
     gloss *= 0.8 * shown;
 #ifdef TEXTURED

@@ -71,7 +71,10 @@ class Light(Table):
 
 
 class Lights(Table):
-    """Four lights, and what comes from above and from below."""
+    """Four lights, and what comes from above and from below.
+
+    ``width`` 0..1: how wide the sources of all but the key light are; their gloss on dry skin is as soft.
+    """
 
     key: Light
     fill: Light
@@ -79,6 +82,7 @@ class Lights(Table):
     rim_right: Light
     sky: _Colour
     ground: _Colour
+    width: Annotated[float, Field(ge=0, le=1)] = 0.0
 
 
 class Look(Table):

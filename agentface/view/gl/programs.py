@@ -50,6 +50,7 @@ def colours(look: Look) -> dict[str, Any]:
         "background_inner": look.background_inner,
         "background_outer": look.background_outer,
         "exposure": look.exposure,
+        "light_width": look.lights.width,
     }
 
 

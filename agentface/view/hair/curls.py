@@ -15,6 +15,10 @@ from agentface.view.hair.styles import REFERENCE_EYES, Amount, Style, knot_of
 
 _WHOLE = 0.016
 """Metres behind the hairline of the forehead where a crop has its whole length."""
+_UNEVEN = 0.6, 1.35
+"""How long its hairs are there, beside their place: some are half as short, some twice as long."""
+_FADE, _FAINTEST = 1.5, 0.12
+"""The exponent with which short hairs fade, and how faint the shortest are."""
 _COIL = 0.0013
 """Metres from a coil's axis to its hair where hair is as curly as it gets."""
 _IN_A_CLUMP, _CLUMPED, _CLUMP_TINT = 9, 0.40, (0.9, 3.0)
@@ -31,7 +35,7 @@ def crop(
     n = roots.normals
     x = unit_rows(np.cross(n, rng.normal(size=(count, 3))))
     y = np.cross(n, x)
-    short = np.clip(roots.depth / line.taper(roots.places, _WHOLE), 0.10, 1.0)
+    short = np.clip(roots.depth / line.taper(roots.places, _WHOLE) * rng.uniform(*_UNEVEN, count), 0.10, 1.0)
     height = look.volume * look.length * style.thickness * short * (0.62 + 0.38 * layer)
     radius = _COIL * look.curl * (0.6 + 0.8 * rng.random(count)) * (0.4 + 0.6 * short)
     turn = 2 * np.pi * (rng.random(count)[:, None] + (1.15 + 0.5 * rng.random(count)[:, None]) * t)
@@ -43,7 +47,7 @@ def crop(
     clump = _clumps(roots, rng)
     points = points + _CLUMPED * (roots.places[clump] - roots.places)[:, None] * t[:, None] * short[:, None, None]
     tint = rng.uniform(*_CLUMP_TINT, count)[clump]
-    paint = paints(look, tint, 1.0 * np.clip(1.3 * short, 0.25, 1.0), rng, 0.6)
+    paint = paints(look, tint, np.clip(1.2 * short**_FADE, _FAINTEST, 1.0), rng, 0.6)
     cover = (0.25 + 0.75 * layer[:, None]) * (0.4 + 0.6 * t)
     radii = amount.radius * (0.7 + 0.6 * rng.random(count)) * np.clip(short + 0.2, 0, 1)
     return StrandSet(points, radii, paint, cover, layer, np.ones(count))

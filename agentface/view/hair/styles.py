@@ -54,7 +54,7 @@ class Style:
 STYLES = {
     "cropped": Style(
         0.006, 0.006, 0, 0, 0, 1.0, False,
-        {"fast": Amount(0, 0.0, 1000, 0.0005, 4), "portrait": Amount(0, 0.0, 4700, 0.00025, 6)},
+        {"fast": Amount(0, 0.0, 1000, 0.0005, 4), "portrait": Amount(0, 0.0, 4400, 0.00026, 6)},
     ),
     "swept": Style(
         0.013, 0.022, 0.70, 0.03, 0.35, 0.80, False,

@@ -12,6 +12,7 @@ from agentface.head.model import HeadModel
 from agentface.head.ring_names import LidRing, LipRing
 from agentface.mesh.evening import evened
 from agentface.mesh.smoothstep import smoothstep
+from agentface.view.skin.ears import ear_light
 
 
 class _Spot(NamedTuple):
@@ -96,7 +97,7 @@ def folds(model: HeadModel) -> Floats:
     shade = model.shade[:, 0]
     light = shade * np.clip(_DARKER + _STEEPER * shade, 0.0, 1.0)
     light = light + _CORNER_EVENED * _CORNER.field(model) * (_CORNER_LIGHT - light)
-    light = light * (1.0 - _CREASE_SHADE * _lid_creases(model))
+    light = light * (1.0 - _CREASE_SHADE * _lid_creases(model)) * ear_light(model)
     return light[:, None].astype(np.float32)
 
 

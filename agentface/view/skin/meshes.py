@@ -14,11 +14,12 @@ from agentface.head.model import HeadModel
 from agentface.mesh.refine import Refined, refine, unrefined
 from agentface.view.gl.drawn_mesh import DrawnMesh
 from agentface.view.skin.complexion import blurred, softened_corners
+from agentface.view.skin.ears import sharp_ears
 from agentface.view.skin.fine_lips import FineLips
 from agentface.view.skin.uncovered import uncovered
 
 _COLUMNS = 256
-_BLUR = 14
+_BLUR, _BLUR_EARS = 14, 3
 
 
 class SkinFields:
@@ -67,7 +68,7 @@ class SkinMeshes:
         self._model, self._lips, self._triangles = model, lips, uncovered(model)
         fields = {
             "rest": model.vertices,
-            "soft_normal": blurred(model.normals, model.triangles, _BLUR),
+            "soft_normal": _soft_normals(model),
             "rest_normal": model.normals,
             "material": softened_corners(model),
             **dressed,
@@ -91,6 +92,11 @@ class SkinMeshes:
             return np.asarray((np.linalg.norm(a - b, axis=1) > longest_m) | self._lips.has_edges(edges))
 
         return self._lips.mesh(refine(self._triangles, len(self._model.vertices), cut))
+
+
+def _soft_normals(model: HeadModel) -> Floats:
+    sharp, soft = (blurred(model.normals, model.triangles, times) for times in (_BLUR_EARS, _BLUR))
+    return sharp_ears(model, sharp, soft)
 
 
 def _drawn(mesh: Refined, fields: dict[str, Floats]) -> DrawnMesh:
