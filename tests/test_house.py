@@ -74,7 +74,7 @@ def test_what_is_noted_as_slow_is_there():
     missing = [
         name
         for name in SlowTests.noted().names
-        for path, _, function in [name.partition("::")]
+        for path, function in [(name.partition("::")[0], name.rpartition("::")[2] if "::" in name else "")]
         if f"def {function}" not in ((ROOT / path).read_text() if (ROOT / path).exists() else "")
     ]
     assert missing == []
