@@ -23,6 +23,7 @@ const vec2 SHINES = vec2(0.65, 1.85);  // how much of the highlights dull and br
 const vec2 DISORDER = vec2(0.0, 0.13);  // of the length: up to where roots rise at all angles, and from where they lie alike
 const float SCATTER = 0.45;   // what they send back of the highlights, as a part of what they scatter
 const vec3 COOL = vec3(0.97, 1.0, 1.04), WARM = vec3(1.04, 1.0, 0.95);   // their own hues
+const vec2 LOCKS = vec2(0.78, 1.25);   // how much locks send back, beside each other
 const float TURNED = -0.35;   // cosine; at its outline hair is still seen from outside
 
 void main() {
@@ -30,7 +31,7 @@ void main() {
     vec3 view = normalize(eye_point.xyz - placed);
     n = dot(n, view) < TURNED ? -n : n;
     float own = fract(sheet.w * 3.7);
-    vec3 base = hair_colour * mix(0.95, 1.7, smoothstep(0.1, 1.0, sheet.y)) * (0.94 + 0.12 * fract(sheet.w * 5.3));
+    vec3 base = hair_colour * mix(0.95, 1.7, smoothstep(0.1, 1.0, sheet.y)) * mix(LOCKS.x, LOCKS.y, fract(sheet.w * 5.3));
     float shift = 0.12 * (own - 0.5);
     HairLight back = hair_lights(base, along, n, view, gloss, shift - JITTER, sheet.z), ahead = hair_lights(base, along, n, view, gloss, shift + JITTER, sheet.z);
     float order = smoothstep(DISORDER.x, DISORDER.y, sheet.y);

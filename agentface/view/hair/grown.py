@@ -83,7 +83,7 @@ class GrownHair:
         return self._model.derived(f"view.{name}.{stamp_of((), repr(self._look))}", lambda _: grow_it())
 
     def _grow_sheets(self) -> tuple[Doubles, list[Sheet], list[Sheet]]:
-        hull = Hull(self._model, ears=True)
+        hull = Hull(self._model, ears=True, moving=True)
         line = parting_line(self._model, self._look, hull)
         rng = np.random.default_rng(_LONG_SEED)
         grown = cards(self._model, self._look, hull, rng), sheets(self._model, self._look, hull, rng)
