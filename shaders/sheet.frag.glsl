@@ -9,10 +9,10 @@ uniform float least_cover; // of a pixel, that is drawn
 
 const float HAIRS = 64.0;      // that are seen in a lock
 const float CARDS = 14.0;      // the first number of a lock that is a card
-const float CARD_HAIRS = 48.0; // that are seen in a card
-const float WISP = 8.0;        // hairs that keep together
+const float CARD_HAIRS = 24.0; // that are seen in a card
+const float WISP = 6.0;        // hairs that keep together
 const float UNEQUAL = 0.45;    // how unequal they are
-const float POINTED = 0.65;     // how far they end in a point
+const float POINTED = 0.35;     // how far they end in a point
 const float TIP = 0.10;        // of the length, over which hairs end
 const float ROOT = 0.010;      // of the length, over which they begin
 const float BLUNT = 0.75;      // of its width, with which it does
@@ -46,7 +46,7 @@ void main() {
     float here = varied(hairs, hair_seen), ends = varied(wisp + 7.0, wisp_seen), point = wisp_seen * abs(2.0 * fract(wisp) - 1.0);
     float narrow = mix(1.4, 0.82, card * smoothstep(0.0, 0.2, along)) - (0.04 + 0.14 * own) * smoothstep(APART, 1.0, along);
     float edge = EDGE * (strand.x - CARDS * card) * (1.2 - along) + 0.8 * along + 1.2 * drift.g;   // fewer hairs frame the face
-    float last = 1.0 - TIP * (0.35 * own + 0.75 * ends * ends + 0.30 * here * here);
+    float last = 1.0 - TIP * (0.45 * own + 0.45 * ends * ends + 0.50 * here * here);
     narrow *= min((last - along) / TIP + mix(1.0, BLUNT, card), 1.0);   // a lock as a whole ends in a point
     vec4 within = vec4(edge + mix(0.2, -0.1, card) - here, (last - along) / (0.4 * TIP) - POINTED * (0.5 + 0.9 * ends) * point, narrow + 0.32 * here - abs(lock), along - ROOT * mix(SHEET_ROOT, 1.0, card) * (1.3 * here + 0.6 * ends - 0.4));
     vec4 soft = vec4(min(EDGE / many * pixel.x, 0.3) + 0.5 * unseen, pixel.y / (0.4 * TIP) + POINTED * min(2.0 / WISP * pixel.x, 0.5) + 0.1 * unseen, 2.0 / many * pixel.x + 0.3 * unseen, pixel.y + (0.3 + unseen) * ROOT);

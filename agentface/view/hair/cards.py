@@ -26,9 +26,9 @@ _NUMBERS, _OWN = 24, 40.0
 """What the shader draws hairs by, few enough for its arithmetic."""
 _GOLDEN = 0.618
 """Turns from the height of a card to the next one's, so that neighbours lie apart."""
-_SINKING = 0.02, 0.20
+_SINKING = 0.035, 0.20
 """Metres from the root between which they come to do so: the outline of the crown is one."""
-_APART, _APART_FROM = 0.0028, 0.030
+_APART, _APART_AT_ROOT, _APART_FROM = 0.0028, 0.2, (0.025, 0.08)
 """Metres by which the highest lie over the lowest, so that none cut through others, and from the root to there: where
 the crown is seen against the light nothing is seen between them."""
 _WISP_WIDTH, _WISP_DRIFT = 0.7, 1.2
@@ -57,27 +57,29 @@ def cards(model: HeadModel, look: HairLook, hull: Hull, rng: np.random.Generator
         mantle = Mantle.drawn(hull, look, paths, locks, thickness)
         course = Course.drawn(paths, locks, rng)
         layer: Doubles = np.mod(_GOLDEN * np.arange(CARDS), 1.0)[:, None]
-        points = _lying(hull, look, course, locks, rng)
-        edges = _edges(hull, course, mantle, points, layer, rng)
+        points, off = _lying(hull, look, course, locks, rng)
+        edges = _edges(hull, course, mantle, points, off, layer, rng)
         grown += _woven(hull, course, edges, layer, rng)
     return grown
 
 
-def _lying(hull: Hull, look: HairLook, course: Course, locks: Locks, rng: np.random.Generator) -> Doubles:
-    """``(N, R, 3)`` m: the middle line of each card on the ``hull``, a little off its course."""
+def _lying(hull: Hull, look: HairLook, course: Course, locks: Locks, rng: np.random.Generator) -> tuple[Doubles, Doubles]:
+    """``(N, R, 3)`` m: the middle line of each card on the ``hull``, in waves; ``(N, R)`` m: how far off those of all."""
     along, middle = course.along, course.middle
-    aside, _ = locks.waves(course.root, along)
     drift = _DRIFT * np.where(course.wisps(), _WISP_DRIFT, 1.0) * rng.normal(size=CARDS).clip(-1.3, 1.3)
-    sway = look.curl * WAVE * aside + drift[:, None] * course.t**1.5
-    points = middle + sway[..., None] * sideways(hull, middle)
+    off = look.curl * WAVE * locks.own(course.root, along) + drift[:, None] * course.t**1.5
+    sway = look.curl * WAVE * locks.waves(course.root, along)[0] + off
+    across = sideways(hull, middle)
+    points = middle + sway[..., None] * across
     rootward = _OVER_PARTING * rng.random((CARDS, 1)) * np.exp(-along / _OVER_PARTING_REACH)
-    return smoothed(points - rootward[..., None] * unit_rows(np.gradient(middle, axis=1)), 2)
+    points = points - rootward[..., None] * unit_rows(np.gradient(middle, axis=1))
+    return smoothed(points, 2), off * np.sign((across * course.aside).sum(axis=2))
 
 
 def _edges(
-    hull: Hull, course: Course, mantle: Mantle, points: Doubles, layer: Doubles, rng: np.random.Generator
+    hull: Hull, course: Course, mantle: Mantle, points: Doubles, off: Doubles, layer: Doubles, rng: np.random.Generator
 ) -> Doubles:
-    """``(N, 2, R, 3)`` m: both edges of each card about its middle line ``points (N, R, 3)`` m, at their heights.
+    """``(N, 2, R, 3)`` m: both edges of each card about ``points (N, R, 3)`` m, ``off (N, R)`` m its place, at their heights.
 
     All follow the ``mantle`` and only their ``layer (N, 1)`` tells them apart, so that none cuts through others.
     """
@@ -92,11 +94,11 @@ def _edges(
     across = unit_rows(at_root * unit_rows(course.aside) + (1.0 - at_root) * across)
     side = _ACROSS[:, None]
     edges = points[:, None] + side[..., None] * (half[..., None] * across)[:, None]
-    place = course.place[:, None] + side * (half / spaces * course.space[:, None])[:, None]
+    place = course.place[:, None] + ((off[:, None] + side * half[:, None]) / spaces[:, None]) * course.space[:, None, None]
     part = np.repeat(course.part[:, None], len(_ACROSS), axis=1)
     sunk = (1.0 - LOW) * (1.0 - layer) * smoothstep(*_SINKING, course.along)
     turned = _TURNED_IN * (1.0 - layer) ** 2 * smoothstep(*_TURNING, t)
-    apart = _APART * layer * smoothstep(0.0, _APART_FROM, course.along) - turned
+    apart = _APART * layer * (_APART_AT_ROOT + (1.0 - _APART_AT_ROOT) * smoothstep(*_APART_FROM, course.along)) - turned
     twist = half * _TWIST * rng.normal(size=(CARDS, 1)) * smoothstep(0.25, 0.7, t)
     height = mantle.at(place, part) - sunk[:, None] * mantle.thickness(place, part) + apart[:, None]
     height = height + side * twist[:, None]

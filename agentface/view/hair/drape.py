@@ -17,7 +17,7 @@ from agentface.view.hair.styles import REFERENCE_EYES, parting_of, whorl_of
 COLUMNS = 48
 _ON_PARTING = 0.45
 """The part of the columns that start along the parting; the others fan out round the whorl."""
-_TURNS_DEG = (50.0, 186.0)
+_TURNS_DEG = (50.0, 190.0)
 """Round the head from the front, where it is widest: where the first and the last column lie."""
 _ARC, _FALL = 24, 14
 _SMOOTHINGS, _PULLS, _LAST_SMOOTHINGS = 8, 10, 30

@@ -28,7 +28,7 @@ _EDGES, _EDGE_LENGTH, _EDGE_WIDTH = 3.2, (0.012, 0.050), (0.4, 0.85)
 """Hairs before the edge of the hair at the face for each flyaway; metres; their widths beside that of flyaways."""
 _EDGE_AHEAD, _EDGE_NEARER, _EDGE_BEHIND = 0.0065, 1.8, 0.007
 """Metres before it at most where they are rooted, the exponent with which they gather at it, and how far they go in."""
-_EDGE_SPAN, _EDGE_TO_ROOT, _EDGE_POINTS = 0.115, 1.4, 90
+_EDGE_SPAN, _EDGE_TO_ROOT, _EDGE_POINTS = 0.062, 1.4, 90
 """Metres from the parting to where the last of them is rooted, the exponent with which they grow fewer to there; points
 of the edge that they follow."""
 _ON_SKIN, _OVER_EDGE, _JOINED = 0.0003, 0.002, 0.55

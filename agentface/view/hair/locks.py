@@ -19,12 +19,14 @@ _WAVE_LENGTH, _WAVE_SIZE = (0.100, 0.145), (0.55, 1.0)
 """Metres from wave to wave, and how high they are beside the highest."""
 _STEP = 0.22
 """Turns by which waves lag behind those one knot nearer to the face, at most."""
-_STRAIGHT, _WAVY = 0.035, 0.135
+_STRAIGHT, _WAVY = 0.045, 0.125
 """Metres from the root up to where hair lies straight, and from where on waves are whole."""
-_OWN, _OWN_LENGTH = 0.45, 0.072
+_OWN, _OWN_LENGTH = 0.35, 0.072
 """How high a lock's own waves are beside those of all, and how long in metres."""
 _AT_FACE, _FRAMING = 0.35, 0.2
-"""How high waves are at the face, where they would go into it, beside others, and the place from where on they are."""
+"""How high waves are at the face, where they would go into it, beside others; up to which place."""
+_AT_NAPE, _NAPE = 0.25, 0.82
+"""How high they are at the nape, where those of both sides meet; from which place on."""
 _CLUMPED, _CLUMPED_FROM, _CLUMPED_TO = 0.45, 0.22, 0.95
 """How far hair comes to the middle of its lock, and the parts of its length between which it does."""
 
@@ -71,12 +73,21 @@ class Locks:
 
     def waves(self, place: Doubles, along: Doubles) -> tuple[Doubles, Doubles]:
         """``(N, R)`` each: how far hair swings aside and outward at ``along (N, R)`` m, as parts of the highest wave."""
+        turn, grown = self._turn(place, along)
+        return grown * np.sin(turn), grown * np.cos(turn)
+
+    def own(self, place: Doubles, along: Doubles) -> Doubles:
+        """``(N, R)``: how far each lock swings aside by itself, as a part of the same."""
+        turn = 2.0 * np.pi * (along / _OWN_LENGTH + self.start[self.number(place)][:, None])
+        return np.asarray(_OWN * self._turn(place, along)[1] * np.sin(turn))
+
+    def _turn(self, place: Doubles, along: Doubles) -> tuple[Doubles, Doubles]:
+        """``(N, R)`` each: radians that the waves have turned, and how high they are."""
         lag, length, size = (self._between(knots, place) for knots in (self.lag, self.length, self.size))
         turn = 2.0 * np.pi * (along / length + lag)
-        framing = (_AT_FACE + (1.0 - _AT_FACE) * smoothstep(0.0, _FRAMING, place))[:, None]
-        grown = framing * size * smoothstep(_STRAIGHT, _WAVY, along)
-        own = np.sin(2.0 * np.pi * (along / _OWN_LENGTH + self.start[self.number(place)][:, None]))
-        return grown * (np.sin(turn) + _OWN * own) / (1.0 + _OWN), grown * np.cos(turn)
+        between = _AT_FACE + (1.0 - _AT_FACE) * smoothstep(0.0, _FRAMING, place)
+        between = (between * (1.0 - (1.0 - _AT_NAPE) * smoothstep(_NAPE, 1.0, place)))[:, None]
+        return turn, between * size * smoothstep(_STRAIGHT, _WAVY, along)
 
     def _between(self, knots: Doubles, place: Doubles) -> Doubles:
         return np.asarray(np.interp(place, np.linspace(0.0, 1.0, len(knots)), knots)[:, None])

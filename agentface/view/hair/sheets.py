@@ -19,7 +19,7 @@ from agentface.view.hair.styles import thickness_of
 
 _EVERY, _ROWS = 3, 21
 """Which of the columns they have; points along each."""
-_LAYER_ON_TOP, _LAYER, _TOP, _SHARE = 0.60, 0.22, 2.0, 0.97
+_LAYER_ON_TOP, _LAYER, _TOP, _SHARE = 0.60, 0.22, 2.0, 0.985
 """Where between the skin and the outside of the hair the sheets lie, on the head and beside it; how soon it is on the
 head; how long they are beside the cards."""
 _LIGHT_AT_ROOT, _LIGHT = 0.72, 0.62
@@ -33,7 +33,7 @@ _EDGE_POINTS, _EDGE_COLUMNS = 80, 4
 """Of the edge, and how many columns of a sheet behind it keep light off the skin below them."""
 _ROUND_REACH = 0.025
 """Metres from where hair starts over which it comes to face its own way, not that of the head's round."""
-_AT_SIDES, _SIDES = 0.62, 0.075
+_AT_SIDES, _SIDES = 0.56, 0.075
 """How thick hair lies beside the head as a part of that on top, and metres over the centre of the head to there."""
 _ROOTWARD = 0.45
 """How much denser than half way the points along hair are at its root, where it lies round the head."""
@@ -43,11 +43,11 @@ LOCKS, FIRST_CARD, PAINTED = 13, 14, 26
 """Of a sheet; the number of the first card; up to which number ``shaders/sheet_flat.vert.glsl`` paints."""
 _WIDTHS = 0.3, 1.7
 """Of the spaces between columns, in locks, as parts of their mean."""
-_UNEVEN = 0.05
+_UNEVEN = 0.03
 """The part by which the lengths of locks differ."""
 _LOWEST = 0.0010
 """Metres over the hull, which is smoother than the head."""
-WAVE, WAVE_OUT = 0.0105, 0.0060
+WAVE, WAVE_OUT = 0.0160, 0.0095
 """Metres to and fro, aside and outward, of the curliest hair."""
 _TUCKED = 0.2
 """How high the front edge lies, as a part of the hair's thickness."""
