@@ -9,7 +9,7 @@ uniform float least_cover; // of a pixel, that is drawn
 
 const float HAIRS = 64.0;      // that are seen in a lock
 const float CARDS = 14.0;      // the first number of a lock that is a card
-const float CARD_HAIRS = 24.0; // that are seen in a card
+const float CARD_HAIRS = 26.0; // that are seen in a card
 const float WISP = 6.0;        // hairs that keep together
 const float UNEQUAL = 0.45;    // how unequal they are
 const float POINTED = 0.35;     // how far they end in a point
@@ -22,12 +22,14 @@ const float GAP = 0.34, GAPS = 0.8;  // how much darker it is between locks, and
 const float APART = 0.8;      // from here on locks narrow towards their tips
 
 float scattered(float number) {
-    return fract(0.618034 * number + 0.37 * floor(strand.w) + 0.11 * fract(0.1415 * number * number));
+    float at = fract(0.1031 * number + 0.37 * floor(strand.w));
+    at *= at + 33.33;
+    return fract(2.0 * at * at);
 }
 
 // How much is seen of what differs from one to the next where a pixel holds so many.
 float seen(float pixel) {
-    return clamp(1.5 - 2.0 * pixel, 0.0, 1.0);
+    return clamp(1.5 - 1.5 * pixel, 0.0, 1.0);
 }
 
 // From one strand of hairs to the next, 0..1; their mean where they are not seen.

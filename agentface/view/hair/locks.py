@@ -13,17 +13,17 @@ _SEED = 41, 42
 """Of the left side and of the right: cards and the sheets below them wave alike."""
 _LOCKS, _UNEQUAL = 13, (0.45, 1.6)
 """On each side; their widths as parts of the mean."""
-_KNOTS = 9
+_KNOTS = 8
 """Places on each side between which waves change."""
-_WAVE_LENGTH, _WAVE_SIZE = (0.100, 0.145), (0.55, 1.0)
+_WAVE_LENGTH, _WAVE_SIZE = (0.105, 0.140), (0.45, 1.0)
 """Metres from wave to wave, and how high they are beside the highest."""
-_STEP = 0.22
-"""Turns by which waves lag behind those one knot nearer to the face, at most."""
-_STRAIGHT, _WAVY = 0.045, 0.125
+_STEP = -0.12, 0.28
+"""Turns by which waves lag behind those one knot nearer to the face."""
+_STRAIGHT, _WAVY = 0.050, 0.150
 """Metres from the root up to where hair lies straight, and from where on waves are whole."""
 _OWN, _OWN_LENGTH = 0.35, 0.072
 """How high a lock's own waves are beside those of all, and how long in metres."""
-_AT_FACE, _FRAMING = 0.35, 0.2
+_AT_FACE, _FRAMING = 0.6, 0.2
 """How high waves are at the face, where they would go into it, beside others; up to which place."""
 _AT_NAPE, _NAPE = 0.25, 0.82
 """How high they are at the nape, where those of both sides meet; from which place on."""
@@ -51,7 +51,7 @@ class Locks:
         rng = np.random.default_rng(_SEED[int(sign < 0.0)])
         widths = rng.uniform(*_UNEQUAL, _LOCKS)
         bounds = np.concatenate([[0.0], np.cumsum(widths)]) / widths.sum()
-        lag = np.cumsum(rng.uniform(-0.3 * _STEP, _STEP, _KNOTS))
+        lag = np.cumsum(rng.uniform(*_STEP, _KNOTS))
         return cls(
             bounds, rng.random(_LOCKS), lag, rng.uniform(*_WAVE_LENGTH, _KNOTS), rng.uniform(*_WAVE_SIZE, _KNOTS)
         )

@@ -17,12 +17,12 @@ from agentface.view.hair.locks import Locks
 from agentface.view.hair.ribbons import unit_rows
 from agentface.view.hair.styles import thickness_of
 
-_EVERY, _ROWS = 3, 21
+_EVERY, _ROWS = 3, 25
 """Which of the columns they have; points along each."""
-_LAYER_ON_TOP, _LAYER, _TOP, _SHARE = 0.60, 0.22, 2.0, 0.985
+_LAYER_ON_TOP, _LAYER, _TOP, _SHARE = 0.45, 0.22, 2.0, 0.985
 """Where between the skin and the outside of the hair the sheets lie, on the head and beside it; how soon it is on the
 head; how long they are beside the cards."""
-_LIGHT_AT_ROOT, _LIGHT = 0.72, 0.62
+_LIGHT_AT_ROOT, _LIGHT = 0.58, 0.42
 """How much light the cards let through to them."""
 _AT_PARTING, _AT_CROWN, _TO_CROWN, _RISE = 0.25, 0.92, (0.0, 0.24), 0.040
 """How high hair lies where it starts at the face and at the crown, as a part of its thickness; the places between which
@@ -35,7 +35,7 @@ _ROUND_REACH = 0.025
 """Metres from where hair starts over which it comes to face its own way, not that of the head's round."""
 _AT_SIDES, _SIDES = 0.56, 0.075
 """How thick hair lies beside the head as a part of that on top, and metres over the centre of the head to there."""
-_ROOTWARD = 0.45
+_ROOTWARD = 0.25
 """How much denser than half way the points along hair are at its root, where it lies round the head."""
 SIGNS = 1.0, -1.0
 """Of x, of the sides of the head."""
@@ -45,9 +45,9 @@ _WIDTHS = 0.3, 1.7
 """Of the spaces between columns, in locks, as parts of their mean."""
 _UNEVEN = 0.03
 """The part by which the lengths of locks differ."""
-_LOWEST = 0.0010
+_LOWEST = 0.0020
 """Metres over the hull, which is smoother than the head."""
-WAVE, WAVE_OUT = 0.0160, 0.0095
+WAVE, WAVE_OUT = 0.0150, 0.0080
 """Metres to and fro, aside and outward, of the curliest hair."""
 _TUCKED = 0.2
 """How high the front edge lies, as a part of the hair's thickness."""
