@@ -9,8 +9,8 @@ uniform float least_cover; // of a pixel, that is drawn
 
 const float HAIRS = 64.0;      // that are seen in a lock
 const float CARDS = 14.0;      // the first number of a lock that is a card
-const float CARD_HAIRS = 26.0; // that are seen in a card
-const float WISP = 6.0;        // hairs that keep together
+const float CARD_HAIRS = 40.0; // that are seen in a card
+const float WISP = 4.0;        // hairs that keep together
 const float UNEQUAL = 0.45;    // how unequal they are
 const float POINTED = 0.35;     // how far they end in a point
 const float TIP = 0.10;        // of the length, over which hairs end
@@ -42,7 +42,7 @@ void main() {
     float along = strand.y, number = floor(strand.x), lock = 2.0 * (strand.x - number) - 1.0, own = scattered(3.0 * number + 1.0);
     float card = step(CARDS, strand.x), many = mix(HAIRS, CARD_HAIRS, card);
     // wisps are narrower to one side of a lock
-    float hairs = many * (strand.x + UNEQUAL * (own - 0.5) * (1.0 - lock * lock)) + 1.5 * drift.r, wisp = hairs / WISP;
+    float hairs = many * (strand.x + UNEQUAL * (own - 0.5) * (1.0 - lock * lock)) + 0.8 * drift.r, wisp = hairs / WISP;
     vec2 pixel = vec2(many, 1.0) * fwidth(spread) + 1e-4;
     float hair_seen = seen(pixel.x), wisp_seen = seen(pixel.x / WISP), unseen = 1.0 - hair_seen;
     float here = varied(hairs, hair_seen), ends = varied(wisp + 7.0, wisp_seen), point = wisp_seen * abs(2.0 * fract(wisp) - 1.0);

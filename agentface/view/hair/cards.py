@@ -18,7 +18,8 @@ from agentface.view.hair.ribbons import unit_rows
 from agentface.view.hair.sheets import FIRST_CARD, SIGNS, WAVE, Sheet, sideways
 from agentface.view.hair.styles import thickness_of
 
-_ACROSS = np.array([-1.0, 1.0])
+_ACROSS = np.array([-1.0, 0.0, 1.0])
+"""A card's columns: it is bent over the head."""
 _OVERLAP, _WIDTHS, _NARROWEST, _NARROWED = 1.76, (0.75, 1.35), 0.0024, 0.25
 """A card's width in spaces between cards, and how it differs; its least half width, metres; the part its end loses, for
 there its lock has clumped."""
@@ -33,7 +34,7 @@ _APART, _APART_AT_ROOT, _APART_FROM = 0.0025, 0.2, (0.025, 0.08)
 the crown is seen against the light nothing is seen between them."""
 _WISP_WIDTH, _WISP_DRIFT = 0.7, 1.2
 """How wide wisps are, and how far off their way, beside the others."""
-_DRIFT, _TWIST = 0.0040, 0.04
+_DRIFT, _TWIST = 0.0040, 0.02
 """Metres that ends leave their course, and how steeply cards lie across it: of most of them at most."""
 _TURNED_IN, _TURNING = 0.010, (0.72, 1.0)
 """Metres that the lowest turn in at their ends, besides all of them, and between which parts of their length."""
@@ -79,7 +80,7 @@ def _lying(hull: Hull, look: HairLook, course: Course, locks: Locks, rng: np.ran
 def _edges(
     hull: Hull, course: Course, mantle: Mantle, points: Doubles, off: Doubles, layer: Doubles, rng: np.random.Generator
 ) -> Doubles:
-    """``(N, 2, R, 3)`` m: both edges of each card about ``points (N, R, 3)`` m, ``off (N, R)`` m its place, at their heights.
+    """``(N, C, R, 3)`` m: the columns of each card about ``points (N, R, 3)`` m, ``off (N, R)`` m its place, at their heights.
 
     All follow the ``mantle`` and only their ``layer (N, 1)`` tells them apart, so that none cuts through others.
     """
@@ -106,7 +107,7 @@ def _edges(
 
 
 def _woven(hull: Hull, course: Course, edges: Doubles, layer: Doubles, rng: np.random.Generator) -> list[Sheet]:
-    """The cards between ``edges (N, 2, R, 3)`` m, the lower the darker."""
+    """The cards of columns ``edges (N, C, R, 3)`` m, the lower the darker."""
     t = course.t
     apart = smoothstep(0.0, _LAYERED, t)
     rooted = _ROOT_LIGHT + (1.0 - _ROOT_LIGHT) * smoothstep(0.0, _FROM_ROOT, t)

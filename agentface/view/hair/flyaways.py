@@ -46,7 +46,7 @@ def flyaways(cards: list[Sheet], amount: Amount, look: HairLook, rng: np.random.
     rows, each_side = grids.shape[2], len(cards) // len(SIDES)
     place = rng.random(count) ** np.where(rng.random(count) < _AT_FACE, _TO_THE_FRONT, 1.0)
     chosen = rng.integers(0, len(SIDES), count) * each_side + np.floor(each_side * place).astype(int)
-    middle, aside = grids[chosen].mean(axis=1), grids[chosen, 1] - grids[chosen, 0]
+    middle, aside = grids[chosen].mean(axis=1), grids[chosen, -1] - grids[chosen, 0]
     lines = middle + 0.5 * _ACROSS * rng.uniform(-1.0, 1.0, (count, 1, 1)) * aside
     from_row, share = np.floor(rng.random(count) * 0.55 * rows), rng.uniform(0.3, 0.7, count)
     row = np.minimum(from_row[:, None] + share[:, None] * rows * t, rows - 1.001)
