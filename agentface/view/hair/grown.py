@@ -25,7 +25,7 @@ from agentface.view.parts.anchored import Anchored
 
 _T = TypeVar("_T")
 _SEED, _LONG_SEED = 20, 22
-_GLOSS = {"cropped": 0.25, "swept": 0.8, "bob": 0.9, "bun": 0.9}
+_GLOSS = {"cropped": 0.25, "swept": 0.8, "bob": 1.15, "bun": 0.9}
 _NO_PARTING = 1.0, 1.0, 1.0, 1.0
 """The uniform ``parting`` of ``shaders/cap.frag.glsl``, far from the head."""
 

@@ -15,7 +15,7 @@ from agentface.view.hair.sheets import WAVE_OUT, resampled, risen, volume
 
 _ROWS = 40
 """Along the hair."""
-LOW = 0.78
+LOW = 0.82
 """How high the lowest cards lie, as a part of the hair's thickness."""
 _TUCKED, _AT_FACE = 0.58, 0.22
 """How high the first of them lies, as a part of the hair's thickness; the part of the side that is at the face."""
@@ -23,7 +23,7 @@ _LOWEST, _LOWEST_WAY = (0.001, 0.0046), 0.03
 """Metres over the hull at the root and beyond, above the sheets below; metres from the root between these."""
 _EASED = 3, 4
 """Columns, and points of each, by which what lifts one of them goes farther."""
-_BULGE, _BULGED = 0.0022, (0.15, 0.6)
+_BULGE, _BULGED = 0.0016, (0.15, 0.6)
 """Metres by which the middle of a lock stands out, and the parts of its length between which it comes to that."""
 
 

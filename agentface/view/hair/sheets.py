@@ -19,7 +19,7 @@ from agentface.view.hair.styles import thickness_of
 
 _EVERY, _ROWS = 3, 25
 """Which of the columns they have; points along each."""
-_LAYER_ON_TOP, _LAYER, _TOP, _SHARE = 0.45, 0.42, 2.0, 0.985
+_LAYER_ON_TOP, _LAYER, _TOP, _SHARE = 0.45, 0.66, 2.0, 0.985
 """Where between the skin and the outside of the hair the sheets lie, on the head and beside it; how soon it is on the
 head; how long they are beside the cards."""
 _LIGHT_AT_ROOT, _LIGHT = 0.58, 0.42
@@ -47,9 +47,9 @@ _UNEVEN = 0.03
 """The part by which the lengths of locks differ."""
 _LOWEST = 0.0020
 """Metres over the hull, which is smoother than the head."""
-WAVE, WAVE_OUT = 0.0150, 0.0068
+WAVE, WAVE_OUT = 0.0150, 0.0056
 """Metres to and fro, aside and outward, of the curliest hair."""
-_TUCKED = 0.4
+_TUCKED = 0.5
 """How high the front edge lies, as a part of the hair's thickness."""
 
 
