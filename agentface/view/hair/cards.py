@@ -13,7 +13,7 @@ from agentface.view.hair.drape import draped
 from agentface.view.hair.groom import smoothed
 from agentface.view.hair.hull import Hull
 from agentface.view.hair.locks import Locks
-from agentface.view.hair.mantle import LOW, Mantle
+from agentface.view.hair.mantle import LOW, Mantle, least_height
 from agentface.view.hair.ribbons import unit_rows
 from agentface.view.hair.sheets import FIRST_CARD, SIGNS, WAVE, Sheet, sideways
 from agentface.view.hair.styles import thickness_of
@@ -103,7 +103,8 @@ def _edges(
     twist = half * _TWIST * rng.normal(size=(CARDS, 1)) * smoothstep(0.25, 0.7, t)
     height = mantle.at(place, part) - sunk[:, None] * mantle.thickness(place, part) + apart[:, None]
     height = height + side * twist[:, None]
-    return np.asarray(edges + (height - hull.height(edges))[..., None] * hull.outward(edges))
+    edges = edges + (height - mantle.ground.height(edges))[..., None] * hull.outward(edges)
+    return hull.push_out(edges, least_height(course.along)[:, None])
 
 
 def _woven(hull: Hull, course: Course, edges: Doubles, layer: Doubles, rng: np.random.Generator) -> list[Sheet]:

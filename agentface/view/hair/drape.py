@@ -14,7 +14,7 @@ from agentface.view.hair.hull import Hull
 from agentface.view.hair.ribbons import unit_rows
 from agentface.view.hair.styles import REFERENCE_EYES, parting_of, whorl_of
 
-COLUMNS = 48
+COLUMNS = 49
 _ON_PARTING = 0.45
 """The part of the columns that start along the parting; the others fan out round the whorl."""
 _TURNS_DEG = (50.0, 190.0)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from copy import copy
+
 import numpy as np
 
 from agentface.conventions import Doubles, Floats
@@ -13,6 +15,8 @@ _FALL = 0.11
 """Metres below the centre that count as much as one quarter turn above it."""
 _EAR_LOBE = 1.45
 _SAMPLES = 60_000
+_SMOOTHER = 8
+"""Times that it is smoothed once more."""
 _STILL = 0.0005
 """Metres up to which a shape leaves the skin where it is."""
 
@@ -51,6 +55,13 @@ class Hull:
         """``(3,)`` m: what radii are measured from."""
         unit, back = model.landmarks.eye_separation, float(model.vertices[:, 2].min())
         return np.array([0.0, 0.36 * unit, back + 1.72 * unit])
+
+    def smoother(self) -> Hull:
+        """The same head without its ears' edges."""
+        other = copy(self)
+        for _ in range(_SMOOTHER):
+            other._table = _smooth(other._table)
+        return other
 
     def push_out(self, points: Doubles, height: Doubles | float) -> Doubles:
         """``points (..., 3)`` moved outward to at least ``height`` metres above the hull."""

@@ -29,7 +29,12 @@ _BULGE, _BULGED = 0.0016, (0.15, 0.6)
 
 @dataclass(frozen=True, slots=True)
 class Mantle:
-    """``heights (C, U)`` m over the hull, and ``whole (C, U)`` m how thick hair is, at places evenly apart."""
+    """``heights (C, U)`` m over the ``ground``, and ``whole (C, U)`` m how thick hair is, at places evenly apart.
+
+    The ground is the head without what is small: hair that swings aside keeps its height.
+    """
+
+    ground: Hull
 
     heights: Doubles
     whole: Doubles
@@ -45,9 +50,9 @@ class Mantle:
         swung = look.curl * WAVE_OUT * locks.waves(place, along)[1]
         # where the lowest have to be lifted all are, so that they stay in their order
         lowest = points + (LOW * whole + swung)[..., None] * hull.outward(points)
-        least = _LOWEST[0] + (_LOWEST[1] - _LOWEST[0]) * smoothstep(0.0, _LOWEST_WAY, along)
-        lift = np.linalg.norm(hull.push_out(lowest, least) - lowest, axis=2)
-        return cls(hull.height(points) + whole + swung + _eased(lift), whole, locks)
+        lift = np.linalg.norm(hull.push_out(lowest, least_height(along)) - lowest, axis=2)
+        ground = hull.smoother()
+        return cls(ground, ground.height(points) + whole + swung + _eased(lift), whole, locks)
 
     def at(self, place: Doubles, part: Doubles) -> Doubles:
         """Metres over the hull at ``place (...)`` of the side and ``part (...)`` of the length, in its locks."""
@@ -57,6 +62,11 @@ class Mantle:
     def thickness(self, place: Doubles, part: Doubles) -> Doubles:
         """Metres of hair there."""
         return _read(self.whole, place, part)
+
+
+def least_height(along: Doubles) -> Doubles:
+    """Metres that cards lie over the hull at least, ``along`` m from their roots."""
+    return np.asarray(_LOWEST[0] + (_LOWEST[1] - _LOWEST[0]) * smoothstep(0.0, _LOWEST_WAY, along))
 
 
 def _read(table: Doubles, place: Doubles, part: Doubles) -> Doubles:
