@@ -29,7 +29,7 @@ _BESIDE, _CROSSED, _CROSSING = 0.0008, 4.5, 1.6
 exponent with which it comes to that."""
 _ZIGZAG = ((0.0013, 240.0, 0.0), (0.0007, 610.0, 1.3))
 """Waves of the parting, which is no line: metres to both sides, radians a metre, where each starts."""
-_FRAMING_DEG, _FRAMING_REACH_DEG, _FRAMING_WAY = 19.0, 22.0, (-0.1, 0.45)
+_FRAMING_DEG, _FRAMING_REACH_DEG, _FRAMING_WAY = 25.0, 20.0, (0.0, 0.42)
 """How far the hair at the face comes forward over the cheeks, and to which turn behind it does; the parts of
 its fall between which it comes."""
 _BULGE, _INWARD = 0.006, 0.016
