@@ -18,7 +18,7 @@ _TO_THE_FRONT = 1.25
 """The exponent with which they gather at the face."""
 _JITTER = 0.8
 """Of the space between cards, by which they stand off their places."""
-_SHORTEST, _LONGEST, _MOSTLY_LONG, _ALIKE = 0.90, 1.0, 0.5, 0.35
+_SHORTEST, _LONGEST, _MOSTLY_LONG, _ALIKE = 0.88, 1.0, 0.5, 0.35
 """Parts of the whole length, and the exponent of chance between them; up to where along it all lie side by side."""
 _WISPS, _WISPS_UP_TO = 4, 0.22
 """Every how many cards at the face one is a wisp; up to which place on the side."""

@@ -29,9 +29,12 @@ _BESIDE, _CROSSED, _CROSSING = 0.0008, 4.5, 1.6
 exponent with which it comes to that."""
 _ZIGZAG = ((0.0013, 240.0, 0.0), (0.0007, 610.0, 1.3))
 """Waves of the parting, which is no line: metres to both sides, radians a metre, where each starts."""
-_FRAMING_DEG, _FRAMING_REACH_DEG, _FRAMING_WAY = 25.0, 20.0, (0.0, 0.42)
+_FRAMING_DEG, _FRAMING_REACH_DEG, _FRAMING_WAY = 24.0, 20.0, (0.0, 0.36)
 """How far the hair at the face comes forward over the cheeks, and to which turn behind it does; the parts of
 its fall between which it comes."""
+_BACK, _BACK_WAY = 0.36, (0.30, 0.70)
+"""How much of that it goes back below the cheekbones, where it would hide the corners of the mouth; between which parts
+of its fall."""
 _BULGE, _INWARD = 0.006, 0.016
 """Metres that falling hair stands off half way down, and that its ends turn in towards the neck."""
 
@@ -59,7 +62,8 @@ def _fall(model: HeadModel, look: HairLook, widest: Doubles, sign: float, scale:
     reach = np.hypot(widest[:, 0], widest[:, 2])[:, None]
     s = np.linspace(0.0, 1.0, _FALL + 1)[None, 1:]
     away = np.degrees(turn - turn[0]) / _FRAMING_REACH_DEG
-    turn = turn - np.radians(_FRAMING_DEG) * np.exp(-(away**2)) * smoothstep(*_FRAMING_WAY, s)
+    forward = smoothstep(*_FRAMING_WAY, s) * (1.0 - _BACK * smoothstep(*_BACK_WAY, s))
+    turn = turn - np.radians(_FRAMING_DEG) * np.exp(-(away**2)) * forward
     reach = reach + scale * (_BULGE * np.sin(np.pi * s) - _INWARD * smoothstep(0.35, 1.1, s) ** 1.5)
     lowest = look.length * float(model.landmarks["menton"][1])
     drop = s * (lowest - widest[:, 1:2] - Hull.centre_of(model)[1])

@@ -27,7 +27,7 @@ _LIGHT_AT_ROOT, _LIGHT = 0.58, 0.42
 _AT_PARTING, _AT_CROWN, _TO_CROWN, _RISE = 0.25, 0.92, (0.0, 0.24), 0.040
 """How high hair lies where it starts at the face and at the crown, as a part of its thickness; the places between which
 it comes to that; the metres over which it rises from there."""
-_EDGE_SHADES = ((0.60, 0.009), (0.42, 0.0195))
+_EDGE_SHADES = ((0.60, 0.009), (0.42, 0.0150))
 """How much light the front edge keeps off the skin below it, and within how many metres: close by, and as a whole."""
 _EDGE_POINTS, _EDGE_COLUMNS = 80, 4
 """Of the edge, and how many columns of a sheet behind it keep light off the skin below them."""
