@@ -22,8 +22,8 @@ _EVERY, _ROWS = 3, 25
 _LAYER_ON_TOP, _LAYER, _TOP, _SHARE = 0.45, 0.66, 2.0, 0.985
 """Where between the skin and the outside of the hair the sheets lie, on the head and beside it; how soon it is on the
 head; how long they are beside the cards."""
-_LIGHT_AT_ROOT, _LIGHT = 0.58, 0.42
-"""How much light the cards let through to them."""
+_LIGHT_AT_ROOT, _LIGHT, _LIGHT_AT_FACE = 0.58, 0.42, 0.62
+"""How much light the cards let through to them, least where most of them lie above."""
 _AT_PARTING, _AT_CROWN, _TO_CROWN, _RISE = 0.25, 0.92, (0.0, 0.24), 0.040
 """How high hair lies where it starts at the face and at the crown, as a part of its thickness; the places between which
 it comes to that; the metres over which it rises from there."""
@@ -132,6 +132,7 @@ def _sheet(
     points = points + height[..., None] * hull.outward(points) + (look.curl * WAVE * aside)[..., None] * sideways(hull, points)
     points = hull.push_out(points, 0.001 + _LOWEST * smoothstep(0.0, 0.03, along))
     light = _LIGHT + (_LIGHT_AT_ROOT - _LIGHT) * near_root
+    light = light + (_LIGHT_AT_FACE - _LIGHT) * (1.0 - near_root) * (1.0 - smoothstep(0.0, 1.5, across))[:, None]
     places = np.stack(np.broadcast_arrays(across[:, None], t, light, uneven[:, None]), axis=2)
     return Sheet(points.astype(np.float32), places.astype(np.float32), hull.centre)
 
