@@ -33,12 +33,10 @@ void main() {
     float own = fract(sheet.w * 3.7);
     vec3 base = hair_colour * mix(0.95, 1.7, smoothstep(0.1, 1.0, sheet.y)) * mix(LOCKS.x, LOCKS.y, fract(sheet.w * 5.3));
     float shift = 0.12 * (own - 0.5);
-    HairLight back = hair_lights(base, along, n, view, gloss, shift - JITTER, sheet.z), ahead = hair_lights(base, along, n, view, gloss, shift + JITTER, sheet.z);
+    HairLight light = hair_lights(base, along, n, view, gloss, shift + vec2(-JITTER, JITTER), sheet.z);
     float order = smoothstep(DISORDER.x, DISORDER.y, sheet.y);
-    back.shine = mix(SCATTER * back.body, back.shine, order);
-    ahead.shine = mix(SCATTER * ahead.body, ahead.shine, order);
-    dull = COOL * finish(back.body + SHINES.x * back.shine);
-    bright = WARM * finish(ahead.body + SHINES.y * ahead.shine);
+    dull = COOL * finish(light.body + SHINES.x * mix(SCATTER * light.body, light.shine, order));
+    bright = WARM * finish(light.body + SHINES.y * mix(SCATTER * light.body, light.other, order));
     strand = sheet;
     spread = sheet.xy;
     drift = noise(vec3(0.23 * sheet.x, 1.7 * sheet.y, 0.31 * sheet.w)).rgb - 0.5;

@@ -12,7 +12,7 @@ from agentface.view.hair.ribbons import unit_rows
 from agentface.view.hair.sheets import parts_along, resampled
 from agentface.view.hair.visible import Flags
 
-CARDS, _ROWS = 33, 26
+CARDS, _ROWS = 32, 22
 """On each side; points along each."""
 _TO_THE_FRONT = 1.25
 """The exponent with which they gather at the face."""

@@ -17,7 +17,7 @@ from agentface.view.hair.locks import Locks
 from agentface.view.hair.ribbons import unit_rows
 from agentface.view.hair.styles import thickness_of
 
-_EVERY, _ROWS = 3, 25
+_EVERY, _ROWS = 3, 21
 """Which of the columns they have; points along each."""
 _LAYER_ON_TOP, _LAYER, _TOP, _SHARE = 0.45, 0.66, 2.0, 0.985
 """Where between the skin and the outside of the hair the sheets lie, on the head and beside it; how soon it is on the
