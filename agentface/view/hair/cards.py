@@ -20,7 +20,7 @@ from agentface.view.hair.styles import thickness_of
 
 _ACROSS = np.array([-1.0, 0.0, 1.0])
 """A card's columns: it is bent over the head."""
-_OVERLAP, _WIDTHS, _NARROWEST, _NARROWED = 1.76, (0.75, 1.35), 0.0024, 0.25
+_OVERLAP, _WIDTHS, _NARROWEST, _NARROWED = 1.62, (0.75, 1.35), 0.0024, 0.25
 """A card's width in spaces between cards, and how it differs; its least half width, metres; the part its end loses, for
 there its lock has clumped."""
 _NUMBERS, _OWN = 24, 40.0

@@ -19,9 +19,8 @@ from agentface.view.hair.styles import thickness_of
 
 _EVERY, _ROWS = 3, 21
 """Which of the columns they have; points along each."""
-_LAYER_ON_TOP, _LAYER, _TOP, _SHARE = 0.45, 0.66, 2.0, 0.985
-"""Where between the skin and the outside of the hair the sheets lie, on the head and beside it; how soon it is on the
-head; how long they are beside the cards."""
+_LAYER, _SHARE = 0.66, 0.985
+"""Where between the skin and the outside of the hair the sheets lie; how long they are beside the cards."""
 _LIGHT_AT_ROOT, _LIGHT, _LIGHT_AT_FACE = 0.58, 0.42, 0.62
 """How much light the cards let through to them, least where most of them lie above."""
 _AT_PARTING, _AT_CROWN, _TO_CROWN, _RISE = 0.25, 0.92, (0.0, 0.24), 0.040
@@ -29,13 +28,13 @@ _AT_PARTING, _AT_CROWN, _TO_CROWN, _RISE = 0.25, 0.92, (0.0, 0.24), 0.040
 it comes to that; the metres over which it rises from there."""
 _EDGE_SHADES = ((0.60, 0.009), (0.42, 0.0150))
 """How much light the front edge keeps off the skin below it, and within how many metres: close by, and as a whole."""
-_EDGE_POINTS, _EDGE_COLUMNS = 80, 4
+_EDGE_POINTS, _EDGE_COLUMNS = 80, 9
 """Of the edge, and how many columns of a sheet behind it keep light off the skin below them."""
 _ROUND_REACH = 0.025
 """Metres from where hair starts over which it comes to face its own way, not that of the head's round."""
 _AT_SIDES, _SIDES = 0.56, 0.075
 """How thick hair lies beside the head as a part of that on top, and metres over the centre of the head to there."""
-_ROOTWARD = 0.25
+_ROOTWARD = 0.32
 """How much denser than half way the points along hair are at its root, where it lies round the head."""
 SIGNS = 1.0, -1.0
 """Of x, of the sides of the head."""
@@ -122,11 +121,8 @@ def _sheet(
     points, along = resampled(paths, _SHARE * (1.0 - _UNEVEN * uneven)[:, None] * t)
     tucked = _TUCKED + (1.0 - _TUCKED) * smoothstep(0.0, 1.5, across)[:, None]
     near_root = 1.0 - smoothstep(0.03, 0.12, along)
-    thick = volume(hull, points)
-    on_top = np.clip(_TOP * (thick - _AT_SIDES) / (1.0 - _AT_SIDES), 0.0, 1.0)
-    layer = _LAYER + (_LAYER_ON_TOP - _LAYER) * on_top
     place = np.linspace(0.0, 1.0, len(paths))
-    height = thickness * layer * tucked * risen(place, along) * thick
+    height = thickness * _LAYER * tucked * risen(place, along) * volume(hull, points)
     aside, outward = locks.waves(place, along)
     height = height + look.curl * WAVE_OUT * outward
     points = points + height[..., None] * hull.outward(points) + (look.curl * WAVE * aside)[..., None] * sideways(hull, points)
