@@ -29,7 +29,7 @@ _GOLDEN = 0.618
 """Turns from the height of a card to the next one's, so that neighbours lie apart."""
 _SINKING = 0.035, 0.20
 """Metres from the root between which they come to do so: the outline of the crown is one."""
-_APART, _APART_AT_ROOT, _APART_FROM = 0.0022, 0.45, (0.025, 0.08)
+_APART, _APART_AT_ROOT, _APART_FROM = 0.0022, 0.30, (0.040, 0.120)
 """Metres by which the highest lie over the lowest, so that none cut through others, and from the root to there: where
 the crown is seen against the light nothing is seen between them."""
 _WISP_WIDTH, _WISP_DRIFT = 0.7, 1.2

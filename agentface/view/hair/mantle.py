@@ -15,7 +15,7 @@ from agentface.view.hair.sheets import WAVE_OUT, resampled, risen, volume
 
 _ROWS = 40
 """Along the hair."""
-LOW = 0.82
+LOW = 0.86
 """How high the lowest cards lie, as a part of the hair's thickness."""
 _TUCKED, _AT_FACE = 0.58, 0.22
 """How high the first of them lies, as a part of the hair's thickness; the part of the side that is at the face."""

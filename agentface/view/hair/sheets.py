@@ -19,7 +19,7 @@ from agentface.view.hair.styles import thickness_of
 
 _EVERY, _ROWS = 3, 21
 """Which of the columns they have; points along each."""
-_LAYER, _SHARE = 0.66, 0.985
+_LAYER, _SHARE = 0.75, 0.985
 """Where between the skin and the outside of the hair the sheets lie; how long they are beside the cards."""
 _LIGHT_AT_ROOT, _LIGHT, _LIGHT_AT_FACE = 0.58, 0.42, 0.62
 """How much light the cards let through to them, least where most of them lie above."""
