@@ -64,8 +64,10 @@ def cards(model: HeadModel, look: HairLook, hull: Hull, rng: np.random.Generator
     return grown
 
 
-def _lying(hull: Hull, look: HairLook, course: Course, locks: Locks, rng: np.random.Generator) -> tuple[Doubles, Doubles]:
-    """``(N, R, 3)`` m: the middle line of each card on the ``hull``, in waves; ``(N, R)`` m: how far off those of all."""
+def _lying(
+    hull: Hull, look: HairLook, course: Course, locks: Locks, rng: np.random.Generator
+) -> tuple[Doubles, Doubles]:
+    """``(N, R, 3)`` m: the middle line of each card, in waves; ``(N, R)`` m: how far off those of all."""
     along, middle = course.along, course.middle
     drift = _DRIFT * np.where(course.wisps(), _WISP_DRIFT, 1.0) * rng.normal(size=CARDS).clip(-1.3, 1.3)
     off = look.curl * WAVE * locks.own(course.root, along) + drift[:, None] * course.t**1.5
@@ -80,7 +82,7 @@ def _lying(hull: Hull, look: HairLook, course: Course, locks: Locks, rng: np.ran
 def _edges(
     hull: Hull, course: Course, mantle: Mantle, points: Doubles, off: Doubles, layer: Doubles, rng: np.random.Generator
 ) -> Doubles:
-    """``(N, C, R, 3)`` m: the columns of each card about ``points (N, R, 3)`` m, ``off (N, R)`` m its place, at their heights.
+    """``(N, C, R, 3)`` m: the columns of each card about ``points (N, R, 3)`` m, ``off (N, R)`` m its place.
 
     All follow the ``mantle`` and only their ``layer (N, 1)`` tells them apart, so that none cuts through others.
     """
@@ -95,7 +97,9 @@ def _edges(
     across = unit_rows(at_root * unit_rows(course.aside) + (1.0 - at_root) * across)
     side = _ACROSS[:, None]
     edges = points[:, None] + side[..., None] * (half[..., None] * across)[:, None]
-    place = course.place[:, None] + ((off[:, None] + side * half[:, None]) / spaces[:, None]) * course.space[:, None, None]
+    place = (
+        course.place[:, None] + ((off[:, None] + side * half[:, None]) / spaces[:, None]) * course.space[:, None, None]
+    )
     part = np.repeat(course.part[:, None], len(_ACROSS), axis=1)
     sunk = (1.0 - LOW) * (1.0 - layer) * smoothstep(*_SINKING, course.along)
     turned = _TURNED_IN * (1.0 - layer) ** 2 * smoothstep(*_TURNING, t)

@@ -28,9 +28,9 @@ _WISPS, _WISPS_UP_TO = 4, 0.22
 class Course:
     """Where the cards of a side run on the hull.
 
-    ``t (R,)`` 0..1 along each; ``root (N,)`` of each and ``place (N, R)`` 0 at the face to 1 at the nape, ``space (N,)``
-    from one to the next of them; ``part (N, R)`` of the length of hair there, ``middle (N, R, 3)`` m, ``along (N, R)``
-    m from the root, and ``aside (N, R, 3)`` m to the next card.
+    ``t (R,)`` 0..1 along each; ``root (N,)`` of each and ``place (N, R)`` 0 at the face to 1 at the nape, ``space
+    (N,)`` from one to the next of them; ``part (N, R)`` of the length of hair there, ``middle (N, R, 3)`` m, ``along
+    (N, R)`` m from the root, and ``aside (N, R, 3)`` m to the next card.
     """
 
     t: Doubles

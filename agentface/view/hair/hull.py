@@ -16,7 +16,7 @@ _FALL = 0.11
 _EAR_LOBE = 1.45
 _SAMPLES = 60_000
 _SMOOTHER = 8
-"""Times that it is smoothed once more."""
+"""Times that it is smoothed to lose what is small."""
 _STILL = 0.0005
 """Metres up to which a shape leaves the skin where it is."""
 
@@ -59,9 +59,13 @@ class Hull:
     def smoother(self) -> Hull:
         """The same head without its ears' edges."""
         other = copy(self)
-        for _ in range(_SMOOTHER):
-            other._table = _smooth(other._table)
+        other.soften()
         return other
+
+    def soften(self) -> None:
+        """Lose what is small."""
+        for _ in range(_SMOOTHER):
+            self._table = _smooth(self._table)
 
     def push_out(self, points: Doubles, height: Doubles | float) -> Doubles:
         """``points (..., 3)`` moved outward to at least ``height`` metres above the hull."""

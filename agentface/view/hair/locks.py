@@ -72,7 +72,7 @@ class Locks:
         return np.asarray(1.0 - (np.abs(place - self.middle(place)) / half) ** 2)
 
     def waves(self, place: Doubles, along: Doubles) -> tuple[Doubles, Doubles]:
-        """``(N, R)`` each: how far hair swings aside and outward at ``along (N, R)`` m, as parts of the highest wave."""
+        """``(N, R)`` each: how far hair swings aside and outward at ``along (N, R)`` m, parts of the highest wave."""
         turn, grown = self._turn(place, along)
         return grown * np.sin(turn), grown * np.cos(turn)
 

@@ -46,7 +46,7 @@ _UNEVEN = 0.03
 """The part by which the lengths of locks differ."""
 _LOWEST = 0.0020
 """Metres over the hull, which is smoother than the head."""
-WAVE, WAVE_OUT = 0.0150, 0.0056
+WAVE, WAVE_OUT = 0.0150, 0.0074
 """Metres to and fro, aside and outward, of the curliest hair."""
 _TUCKED = 0.5
 """How high the front edge lies, as a part of the hair's thickness."""
@@ -125,7 +125,11 @@ def _sheet(
     height = thickness * _LAYER * tucked * risen(place, along) * volume(hull, points)
     aside, outward = locks.waves(place, along)
     height = height + look.curl * WAVE_OUT * outward
-    points = points + height[..., None] * hull.outward(points) + (look.curl * WAVE * aside)[..., None] * sideways(hull, points)
+    points = (
+        points
+        + height[..., None] * hull.outward(points)
+        + (look.curl * WAVE * aside)[..., None] * sideways(hull, points)
+    )
     points = hull.push_out(points, 0.001 + _LOWEST * smoothstep(0.0, 0.03, along))
     light = _LIGHT + (_LIGHT_AT_ROOT - _LIGHT) * near_root
     light = light + (_LIGHT_AT_FACE - _LIGHT) * (1.0 - near_root) * (1.0 - smoothstep(0.0, 1.5, across))[:, None]
