@@ -24,7 +24,7 @@ _SMOOTHINGS, _PULLS, _LAST_SMOOTHINGS = 8, 10, 30
 """Hair hangs taut over what stands out: smoothed, and pushed out of the head again, so many times."""
 _WHORL = 0.0025
 """Metres round the whorl where hair starts."""
-_BESIDE, _CROSSED, _CROSSING = 0.0008, 8.0, 1.7
+_BESIDE, _CROSSED, _CROSSING = 0.0008, 5.5, 1.7
 """Metres from the parting where hair starts, by how much of that less at its end, where it is combed over it, and the
 exponent with which it comes to that."""
 _ZIGZAG = ((0.0013, 240.0, 0.0), (0.0007, 610.0, 1.3))

@@ -24,7 +24,7 @@ _AT_FACE, _TO_THE_FRONT = 0.6, 5.0
 """The part of them that gathers at the face, and the exponent with which it does."""
 _BABIES, _BABY_LENGTH, _BABY_WIDTH, _BABY_DEPTH = 1.2, (0.005, 0.013), 0.7, 0.005
 """Short hairs for each flyaway; metres; their width beside that of flyaways; the most metres behind the hairline."""
-_EDGES, _EDGE_LENGTH, _EDGE_WIDTH = 3.2, (0.012, 0.050), (0.4, 0.85)
+_EDGES, _EDGE_LENGTH, _EDGE_WIDTH = 2.0, (0.012, 0.050), (0.4, 0.85)
 """Hairs before the edge of the hair at the face for each flyaway; metres; their widths beside that of flyaways."""
 _EDGE_AHEAD, _EDGE_NEARER, _EDGE_BEHIND = 0.0065, 1.8, 0.007
 """Metres before it at most where they are rooted, the exponent with which they gather at it, and how far they go in."""
