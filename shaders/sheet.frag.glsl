@@ -9,25 +9,27 @@ uniform float least_cover; // of a pixel, that is drawn
 
 const float HAIRS = 64.0;      // that are seen in a lock
 const float CARDS = 14.0;      // the first number of a lock that is a card
-const float CARD_HAIRS = 48.0; // that are seen in a card
-const float WISP = 8.0;        // hairs that keep together
+const float CARD_HAIRS = 40.0; // that are seen in a card
+const float WISP = 4.0;        // hairs that keep together
 const float UNEQUAL = 0.45;    // how unequal they are
-const float POINTED = 0.9;     // how far they end in a point
-const float TIP = 0.19;        // of the length, over which hairs end
+const float POINTED = 0.35;     // how far they end in a point
+const float TIP = 0.10;        // of the length, over which hairs end
 const float ROOT = 0.010;      // of the length, over which they begin
-const float BLUNT = 0.35;      // of its width, with which it does
+const float BLUNT = 0.75;      // of its width, with which it does
 const float SHEET_ROOT = 0.2; // of that, for the sheets, through which one would see past the head
 const float EDGE = 3.0;        // hairs a lock's width, over which the sheet's front edge grows dense
-const float GAP = 0.12, GAPS = 0.3;  // how much darker it is between locks, and how soon along them it comes to that
-const float APART = 0.65;      // from here on locks narrow towards their tips
+const float GAP = 0.34, GAPS = 0.8;  // how much darker it is between locks, and how soon along them it comes to that
+const float APART = 0.8;      // from here on locks narrow towards their tips
 
 float scattered(float number) {
-    return fract(0.618034 * number + 0.37 * floor(strand.w) + 0.11 * fract(0.1415 * number * number));
+    float at = fract(0.1031 * number + 0.37 * floor(strand.w));
+    at *= at + 33.33;
+    return fract(2.0 * at * at);
 }
 
 // How much is seen of what differs from one to the next where a pixel holds so many.
 float seen(float pixel) {
-    return clamp(1.5 - 2.0 * pixel, 0.0, 1.0);
+    return clamp(1.5 - 1.5 * pixel, 0.0, 1.0);
 }
 
 // From one strand of hairs to the next, 0..1; their mean where they are not seen.
@@ -40,13 +42,13 @@ void main() {
     float along = strand.y, number = floor(strand.x), lock = 2.0 * (strand.x - number) - 1.0, own = scattered(3.0 * number + 1.0);
     float card = step(CARDS, strand.x), many = mix(HAIRS, CARD_HAIRS, card);
     // wisps are narrower to one side of a lock
-    float hairs = many * (strand.x + UNEQUAL * (own - 0.5) * (1.0 - lock * lock)) + 1.5 * drift.r, wisp = hairs / WISP;
+    float hairs = many * (strand.x + UNEQUAL * (own - 0.5) * (1.0 - lock * lock)) + 0.8 * drift.r, wisp = hairs / WISP;
     vec2 pixel = vec2(many, 1.0) * fwidth(spread) + 1e-4;
     float hair_seen = seen(pixel.x), wisp_seen = seen(pixel.x / WISP), unseen = 1.0 - hair_seen;
     float here = varied(hairs, hair_seen), ends = varied(wisp + 7.0, wisp_seen), point = wisp_seen * abs(2.0 * fract(wisp) - 1.0);
-    float narrow = mix(1.4, 0.82, card * smoothstep(0.0, 0.2, along)) - (0.05 + 0.25 * own) * smoothstep(APART, 1.0, along);
+    float narrow = mix(1.4, 0.82, card * smoothstep(0.0, 0.2, along)) - (0.04 + 0.14 * own) * smoothstep(APART, 1.0, along);
     float edge = EDGE * (strand.x - CARDS * card) * (1.2 - along) + 0.8 * along + 1.2 * drift.g;   // fewer hairs frame the face
-    float last = 1.0 - TIP * (0.35 * own + 0.75 * ends * ends + 0.30 * here * here);
+    float last = 1.0 - TIP * (0.45 * own + 0.45 * ends * ends + 0.50 * here * here);
     narrow *= min((last - along) / TIP + mix(1.0, BLUNT, card), 1.0);   // a lock as a whole ends in a point
     vec4 within = vec4(edge + mix(0.2, -0.1, card) - here, (last - along) / (0.4 * TIP) - POINTED * (0.5 + 0.9 * ends) * point, narrow + 0.32 * here - abs(lock), along - ROOT * mix(SHEET_ROOT, 1.0, card) * (1.3 * here + 0.6 * ends - 0.4));
     vec4 soft = vec4(min(EDGE / many * pixel.x, 0.3) + 0.5 * unseen, pixel.y / (0.4 * TIP) + POINTED * min(2.0 / WISP * pixel.x, 0.5) + 0.1 * unseen, 2.0 / many * pixel.x + 0.3 * unseen, pixel.y + (0.3 + unseen) * ROOT);

@@ -42,7 +42,7 @@ void main() {
 
     vec3 base = paint.rgb * mix(1.0, 1.2, smoothstep(0.4, 1.0, t));
     vec3 round = normalize(n + 0.45 * solid * side * sideways);
-    HairLight light = hair_lights(base, along, round, view, gloss, 0.16 * (own - 0.5), stroke.z);
+    HairLight light = hair_lights(base, along, round, view, gloss, vec2(0.16 * (own - 0.5)), stroke.z);
     dull = finish(light.body + 0.35 * light.shine);
     bright = finish(light.body + mix(0.8, 1.4, solid) * light.shine);   // single hairs would shine white
     float opacity = blended(paint.a * (1.0 - 0.7 * smoothstep(0.75, 1.0, t)) * min(1.0, 0.45 + 8.0 * t) / widened);

@@ -14,23 +14,28 @@ from agentface.view.hair.hull import Hull
 from agentface.view.hair.ribbons import unit_rows
 from agentface.view.hair.styles import REFERENCE_EYES, parting_of, whorl_of
 
-COLUMNS = 48
+COLUMNS = 49
 _ON_PARTING = 0.45
 """The part of the columns that start along the parting; the others fan out round the whorl."""
-_TURNS_DEG = (54.0, 186.0)
+_TURNS_DEG = (50.0, 190.0)
 """Round the head from the front, where it is widest: where the first and the last column lie."""
 _ARC, _FALL = 24, 14
 _SMOOTHINGS, _PULLS, _LAST_SMOOTHINGS = 8, 10, 30
 """Hair hangs taut over what stands out: smoothed, and pushed out of the head again, so many times."""
 _WHORL = 0.0025
 """Metres round the whorl where hair starts."""
-_BESIDE, _CROSSED = 0.0008, 2.5
-"""Metres from the parting where hair starts, and by how much of that less at its end, where it is combed over it."""
+_BESIDE, _CROSSED, _CROSSING = 0.0008, 5.5, 1.7
+"""Metres from the parting where hair starts, by how much of that less at its end, where it is combed over it, and the
+exponent with which it comes to that."""
 _ZIGZAG = ((0.0013, 240.0, 0.0), (0.0007, 610.0, 1.3))
 """Waves of the parting, which is no line: metres to both sides, radians a metre, where each starts."""
-_FRAMING_DEG, _FRAMING_REACH_DEG = 7.0, 24.0
-"""How far the hair at the face comes forward over the cheeks, and to which turn behind it does."""
-_BULGE, _INWARD = 0.003, 0.009
+_FRAMING_DEG, _FRAMING_REACH_DEG, _FRAMING_WAY = 24.0, 20.0, (0.0, 0.36)
+"""How far the hair at the face comes forward over the cheeks, and to which turn behind it does; the parts of
+its fall between which it comes."""
+_BACK, _BACK_WAY = 0.36, (0.30, 0.70)
+"""How much of that it goes back below the cheekbones, where it would hide the corners of the mouth; between which parts
+of its fall."""
+_BULGE, _INWARD = 0.006, 0.016
 """Metres that falling hair stands off half way down, and that its ends turn in towards the neck."""
 
 
@@ -57,7 +62,8 @@ def _fall(model: HeadModel, look: HairLook, widest: Doubles, sign: float, scale:
     reach = np.hypot(widest[:, 0], widest[:, 2])[:, None]
     s = np.linspace(0.0, 1.0, _FALL + 1)[None, 1:]
     away = np.degrees(turn - turn[0]) / _FRAMING_REACH_DEG
-    turn = turn - np.radians(_FRAMING_DEG) * np.exp(-(away**2)) * smoothstep(0.05, 0.75, s)
+    forward = smoothstep(*_FRAMING_WAY, s) * (1.0 - _BACK * smoothstep(*_BACK_WAY, s))
+    turn = turn - np.radians(_FRAMING_DEG) * np.exp(-(away**2)) * forward
     reach = reach + scale * (_BULGE * np.sin(np.pi * s) - _INWARD * smoothstep(0.35, 1.1, s) ** 1.5)
     lowest = look.length * float(model.landmarks["menton"][1])
     drop = s * (lowest - widest[:, 1:2] - Hull.centre_of(model)[1])
@@ -82,6 +88,6 @@ def _roots(model: HeadModel, look: HairLook, hull: Hull, sign: float) -> Doubles
     chosen = line[np.linspace(0, len(line) - 1, count).astype(int)]
     fan = np.radians(np.linspace(90.0, 190.0, COLUMNS - count))
     round_whorl = chosen[-1] + _WHORL * np.stack([sign * np.sin(fan), 0 * fan, np.cos(fan)], axis=1)
-    chosen[:, 0] += sign * _BESIDE * (1.0 - _CROSSED * np.linspace(0.0, 1.0, count) ** 3)
+    chosen[:, 0] += sign * _BESIDE * (1.0 - _CROSSED * np.linspace(0.0, 1.0, count) ** _CROSSING)
     chosen[:, 0] += sum(far * np.sin(turns * chosen[:, 2] + start) for far, turns, start in _ZIGZAG)
     return np.concatenate([chosen, round_whorl])

@@ -24,11 +24,11 @@ _AT_FACE, _TO_THE_FRONT = 0.6, 5.0
 """The part of them that gathers at the face, and the exponent with which it does."""
 _BABIES, _BABY_LENGTH, _BABY_WIDTH, _BABY_DEPTH = 1.2, (0.005, 0.013), 0.7, 0.005
 """Short hairs for each flyaway; metres; their width beside that of flyaways; the most metres behind the hairline."""
-_EDGES, _EDGE_LENGTH, _EDGE_WIDTH = 3.2, (0.012, 0.050), (0.4, 0.85)
+_EDGES, _EDGE_LENGTH, _EDGE_WIDTH = 2.0, (0.012, 0.050), (0.4, 0.85)
 """Hairs before the edge of the hair at the face for each flyaway; metres; their widths beside that of flyaways."""
 _EDGE_AHEAD, _EDGE_NEARER, _EDGE_BEHIND = 0.0065, 1.8, 0.007
 """Metres before it at most where they are rooted, the exponent with which they gather at it, and how far they go in."""
-_EDGE_SPAN, _EDGE_TO_ROOT, _EDGE_POINTS = 0.115, 1.4, 90
+_EDGE_SPAN, _EDGE_TO_ROOT, _EDGE_POINTS = 0.062, 1.4, 90
 """Metres from the parting to where the last of them is rooted, the exponent with which they grow fewer to there; points
 of the edge that they follow."""
 _ON_SKIN, _OVER_EDGE, _JOINED = 0.0003, 0.002, 0.55
@@ -46,7 +46,7 @@ def flyaways(cards: list[Sheet], amount: Amount, look: HairLook, rng: np.random.
     rows, each_side = grids.shape[2], len(cards) // len(SIDES)
     place = rng.random(count) ** np.where(rng.random(count) < _AT_FACE, _TO_THE_FRONT, 1.0)
     chosen = rng.integers(0, len(SIDES), count) * each_side + np.floor(each_side * place).astype(int)
-    middle, aside = grids[chosen].mean(axis=1), grids[chosen, 1] - grids[chosen, 0]
+    middle, aside = grids[chosen].mean(axis=1), grids[chosen, -1] - grids[chosen, 0]
     lines = middle + 0.5 * _ACROSS * rng.uniform(-1.0, 1.0, (count, 1, 1)) * aside
     from_row, share = np.floor(rng.random(count) * 0.55 * rows), rng.uniform(0.3, 0.7, count)
     row = np.minimum(from_row[:, None] + share[:, None] * rows * t, rows - 1.001)

@@ -25,7 +25,7 @@ from agentface.view.parts.anchored import Anchored
 
 _T = TypeVar("_T")
 _SEED, _LONG_SEED = 20, 22
-_GLOSS = {"cropped": 0.25, "swept": 0.8, "bob": 0.9, "bun": 0.9}
+_GLOSS = {"cropped": 0.25, "swept": 0.8, "bob": 1.15, "bun": 0.9}
 _NO_PARTING = 1.0, 1.0, 1.0, 1.0
 """The uniform ``parting`` of ``shaders/cap.frag.glsl``, far from the head."""
 
@@ -83,7 +83,7 @@ class GrownHair:
         return self._model.derived(f"view.{name}.{stamp_of((), repr(self._look))}", lambda _: grow_it())
 
     def _grow_sheets(self) -> tuple[Doubles, list[Sheet], list[Sheet]]:
-        hull = Hull(self._model, ears=True)
+        hull = Hull(self._model, ears=True, moving=True)
         line = parting_line(self._model, self._look, hull)
         rng = np.random.default_rng(_LONG_SEED)
         grown = cards(self._model, self._look, hull, rng), sheets(self._model, self._look, hull, rng)

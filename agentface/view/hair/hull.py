@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from copy import copy
+
 import numpy as np
 
 from agentface.conventions import Doubles, Floats
@@ -13,6 +15,10 @@ _FALL = 0.11
 """Metres below the centre that count as much as one quarter turn above it."""
 _EAR_LOBE = 1.45
 _SAMPLES = 60_000
+_SMOOTHER = 8
+"""Times that it is smoothed to lose what is small."""
+_STILL = 0.0005
+"""Metres up to which a shape leaves the skin where it is."""
 
 
 class Hull:
@@ -21,24 +27,45 @@ class Hull:
     Above the centre a radius is measured from the centre, below it from the vertical axis.
     """
 
-    def __init__(self, model: HeadModel, *, ears: bool) -> None:
+    def __init__(self, model: HeadModel, *, ears: bool, moving: bool = False) -> None:
+        """With ``ears`` or without; ``moving``: with all places to which the face's shapes take the skin."""
         self.centre = self.centre_of(model)
         chosen = model.triangles
         if not ears:
             chosen = chosen[model.material[chosen, 3].max(1) < 0.3]
         rng = np.random.default_rng(0)
         drawn, weights = spread_over(model.vertices, chosen, _SAMPLES, rng)
-        turn, level, reach = self._polar((model.vertices[chosen[drawn]] * weights[..., None]).sum(1))
-        table = np.zeros((_LEVELS, _TURNS))
+        table, corners = np.zeros((_LEVELS, _TURNS)), chosen[drawn]
+        self._reach(table, (model.vertices[corners] * weights[..., None]).sum(1))
+        for shape in model.shapes.values() if moving else ():
+            moved = shape.dense(len(model.vertices))
+            touched = np.abs(moved[corners]).max(axis=(1, 2)) > _STILL
+            posed = (model.vertices + moved)[corners[touched]]
+            self._reach(table, (posed * weights[touched][..., None]).sum(1))
+        self._table = _smooth(_filled(table))
+
+    def _reach(self, table: Doubles, points: Doubles | Floats) -> None:
+        """Raise the radii in ``table`` to those of ``points (N, 3)`` m."""
+        turn, level, reach = self._polar(points)
         rows = np.clip((level / 2.6 * _LEVELS).astype(int), 0, _LEVELS - 1)
         np.maximum.at(table, (rows, ((turn / (2 * np.pi)) % 1 * _TURNS).astype(int) % _TURNS), reach)
-        self._table = _smooth(_filled(table))
 
     @staticmethod
     def centre_of(model: HeadModel) -> Doubles:
         """``(3,)`` m: what radii are measured from."""
         unit, back = model.landmarks.eye_separation, float(model.vertices[:, 2].min())
         return np.array([0.0, 0.36 * unit, back + 1.72 * unit])
+
+    def smoother(self) -> Hull:
+        """The same head without its ears' edges."""
+        other = copy(self)
+        other.soften()
+        return other
+
+    def soften(self) -> None:
+        """Lose what is small."""
+        for _ in range(_SMOOTHER):
+            self._table = _smooth(self._table)
 
     def push_out(self, points: Doubles, height: Doubles | float) -> Doubles:
         """``points (..., 3)`` moved outward to at least ``height`` metres above the hull."""

@@ -15,7 +15,7 @@ from agentface.view.hair.visible import before_skin
 
 _INSIDE_BELOW = 0.045
 """Metres over the centre: below it hair stands off forehead, face and neck, and is seen from inside too."""
-_BARE_INSIDE = 20.0
+_BARE_INSIDE = 16.0
 """Up to which number locks are seen from inside: the sheets' and those of the cards at the face."""
 _COVERAGE = 0x809E, 0x809F
 """GL_SAMPLE_ALPHA_TO_COVERAGE, GL_SAMPLE_ALPHA_TO_ONE."""

@@ -6,45 +6,49 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from agentface.conventions import SIDES, Doubles, Floats, Indices
+from agentface.conventions import Doubles, Floats, Indices
 from agentface.head.look import HairLook
 from agentface.head.model import HeadModel
 from agentface.mesh.smoothstep import smoothstep
 from agentface.view.gl.drawn_mesh import DrawnMesh
 from agentface.view.hair.drape import draped
-from agentface.view.hair.groom import waves
 from agentface.view.hair.hull import Hull
+from agentface.view.hair.locks import Locks
 from agentface.view.hair.ribbons import unit_rows
 from agentface.view.hair.styles import thickness_of
 
 _EVERY, _ROWS = 3, 21
 """Which of the columns they have; points along each."""
-_LAYER_ON_TOP, _LAYER, _TOP, _SHARE = 0.82, 0.22, 2.0, 0.97
-"""Where between the skin and the outside of the hair the sheets lie, on the head and beside it; how soon it is on the
-head; how long they are beside the cards."""
-_LIGHT_AT_ROOT, _LIGHT = 0.72, 0.62
-"""How much light the cards let through to them."""
-_AT_PARTING, _RISE = 0.15, 0.048
-"""How high hair lies where it starts, as a part of its thickness, and the metres over which it rises from there."""
-_EDGE_SHADES = ((0.60, 0.009), (0.42, 0.0195))
+_LAYER, _SHARE = 0.75, 0.985
+"""Where between the skin and the outside of the hair the sheets lie; how long they are beside the cards."""
+_LIGHT_AT_ROOT, _LIGHT, _LIGHT_AT_FACE = 0.58, 0.42, 0.62
+"""How much light the cards let through to them, least where most of them lie above."""
+_AT_PARTING, _AT_CROWN, _TO_CROWN, _RISE = 0.25, 0.92, (0.0, 0.24), 0.040
+"""How high hair lies where it starts at the face and at the crown, as a part of its thickness; the places between which
+it comes to that; the metres over which it rises from there."""
+_EDGE_SHADES = ((0.60, 0.009), (0.42, 0.0150))
 """How much light the front edge keeps off the skin below it, and within how many metres: close by, and as a whole."""
-_EDGE_POINTS, _EDGE_COLUMNS = 80, 4
+_EDGE_POINTS, _EDGE_COLUMNS = 80, 9
 """Of the edge, and how many columns of a sheet behind it keep light off the skin below them."""
 _ROUND_REACH = 0.025
 """Metres from where hair starts over which it comes to face its own way, not that of the head's round."""
-_AT_SIDES, _SIDES = 0.62, 0.075
+_AT_SIDES, _SIDES = 0.56, 0.075
 """How thick hair lies beside the head as a part of that on top, and metres over the centre of the head to there."""
-_ROOTWARD = 0.45
+_ROOTWARD = 0.32
 """How much denser than half way the points along hair are at its root, where it lies round the head."""
+SIGNS = 1.0, -1.0
+"""Of x, of the sides of the head."""
 LOCKS, FIRST_CARD, PAINTED = 13, 14, 26
 """Of a sheet; the number of the first card; up to which number ``shaders/sheet_flat.vert.glsl`` paints."""
 _WIDTHS = 0.3, 1.7
 """Of the spaces between columns, in locks, as parts of their mean."""
-_UNEVEN = 0.05
+_UNEVEN = 0.03
 """The part by which the lengths of locks differ."""
-_LOWEST = 0.0010
+_LOWEST = 0.0020
 """Metres over the hull, which is smoother than the head."""
-_TUCKED = 0.2
+WAVE, WAVE_OUT = 0.0150, 0.0074
+"""Metres to and fro, aside and outward, of the curliest hair."""
+_TUCKED = 0.5
 """How high the front edge lies, as a part of the hair's thickness."""
 
 
@@ -52,12 +56,14 @@ _TUCKED = 0.2
 class Sheet:
     """A grid of columns of hair round the head's ``centre (3,)`` m: ``points (C, R, 3)`` m and ``places (C, R, 4)``.
 
-    A place is across in locks, along 0..1, light that the hair above lets through, and a number of its own.
+    A place is across in locks, along 0..1, light that the hair above lets through, and a number of its own. ``round``
+    is how far its sides face aside, where it is as round as a lock.
     """
 
     points: Floats
     places: Floats
     centre: Doubles
+    round: float = 0.0
 
     def mesh(self) -> tuple[Floats, Indices]:
         """Rows of position, tangent along the hair, normal and place ``(C R, 13)``, and triangles."""
@@ -66,6 +72,8 @@ class Sheet:
         normal = unit_rows(np.cross(across, along))
         away = unit_rows(self.points - self.centre)
         normal *= np.sign((normal * away).sum(2, keepdims=True))
+        side = np.linspace(-self.round, self.round, len(self.points))[:, None, None]
+        normal = unit_rows(normal + side * unit_rows(across))
         # where it parts both sides face alike, however they rise
         way = np.linalg.norm(np.diff(self.points, axis=1, prepend=self.points[:, :1]), axis=2).cumsum(axis=1)
         at_root = np.exp(-way / _ROUND_REACH)[..., None]
@@ -86,10 +94,8 @@ class Sheet:
 def sheets(model: HeadModel, look: HairLook, hull: Hull, rng: np.random.Generator) -> list[Sheet]:
     """The sheets of hair that falls from a parting over the ``hull`` with its ears: what is seen between cards."""
     thickness = thickness_of(model, look)
-    return [
-        _sheet(hull, look, draped(model, look, hull, 1.0 if side == SIDES[0] else -1.0)[::_EVERY], thickness, rng)
-        for side in SIDES
-    ]
+    return [_sheet(hull, look, draped(model, look, hull, sign)[::_EVERY], Locks.of_side(sign), thickness, rng)
+            for sign in SIGNS]  # fmt: skip
 
 
 def edge_shade(grown: list[Sheet], skin: Floats) -> Doubles:
@@ -105,7 +111,9 @@ def edge_shade(grown: list[Sheet], skin: Floats) -> Doubles:
     return np.asarray(sum(share * np.exp(-((away / reach) ** 2)) for share, reach in _EDGE_SHADES), np.float64)
 
 
-def _sheet(hull: Hull, look: HairLook, paths: Doubles, thickness: float, rng: np.random.Generator) -> Sheet:
+def _sheet(
+    hull: Hull, look: HairLook, paths: Doubles, locks: Locks, thickness: float, rng: np.random.Generator
+) -> Sheet:
     widths = rng.uniform(*_WIDTHS, len(paths) - 1)
     across = np.concatenate([[0.0], np.cumsum(widths)]) * LOCKS / widths.sum()
     t = parts_along(_ROWS)
@@ -113,15 +121,18 @@ def _sheet(hull: Hull, look: HairLook, paths: Doubles, thickness: float, rng: np
     points, along = resampled(paths, _SHARE * (1.0 - _UNEVEN * uneven)[:, None] * t)
     tucked = _TUCKED + (1.0 - _TUCKED) * smoothstep(0.0, 1.5, across)[:, None]
     near_root = 1.0 - smoothstep(0.03, 0.12, along)
-    thick = volume(hull, points)
-    on_top = np.clip(_TOP * (thick - _AT_SIDES) / (1.0 - _AT_SIDES), 0.0, 1.0)
-    layer = _LAYER + (_LAYER_ON_TOP - _LAYER) * on_top
-    height = thickness * layer * tucked * risen(along) * thick
-    points = points + height[..., None] * hull.outward(points)
+    place = np.linspace(0.0, 1.0, len(paths))
+    height = thickness * _LAYER * tucked * risen(place, along) * volume(hull, points)
+    aside, outward = locks.waves(place, along)
+    height = height + look.curl * WAVE_OUT * outward
+    points = (
+        points
+        + height[..., None] * hull.outward(points)
+        + (look.curl * WAVE * aside)[..., None] * sideways(hull, points)
+    )
     points = hull.push_out(points, 0.001 + _LOWEST * smoothstep(0.0, 0.03, along))
-    if look.curl:
-        points = points + 0.003 * look.curl * waves(hull, points, along, uneven)
     light = _LIGHT + (_LIGHT_AT_ROOT - _LIGHT) * near_root
+    light = light + (_LIGHT_AT_FACE - _LIGHT) * (1.0 - near_root) * (1.0 - smoothstep(0.0, 1.5, across))[:, None]
     places = np.stack(np.broadcast_arrays(across[:, None], t, light, uneven[:, None]), axis=2)
     return Sheet(points.astype(np.float32), places.astype(np.float32), hull.centre)
 
@@ -132,9 +143,19 @@ def parts_along(rows: int) -> Doubles:
     return np.asarray(even * (1.0 - _ROOTWARD * (1.0 - even)))
 
 
-def risen(along: Doubles) -> Doubles:
-    """How high hair lies ``along`` m from where it starts, as a part of its thickness."""
-    return np.asarray(_AT_PARTING + (1.0 - _AT_PARTING) * np.sin(0.5 * np.pi * np.clip(along / _RISE, 0.0, 1.0)))
+def risen(place: Doubles, along: Doubles) -> Doubles:
+    """How high hair lies ``along (N, R)`` m from where it starts, as a part of its thickness.
+
+    ``place (N,)`` 0 at the face to 1 at the nape: where the parting reaches the crown its sides lie as high as the
+    rest, so that the outline of the head has no notch.
+    """
+    start = (_AT_PARTING + (_AT_CROWN - _AT_PARTING) * smoothstep(*_TO_CROWN, place))[:, None]
+    return np.asarray(start + (1.0 - start) * np.sin(0.5 * np.pi * np.clip(along / _RISE, 0.0, 1.0)))
+
+
+def sideways(hull: Hull, points: Doubles) -> Doubles:
+    """``(N, R, 3)``: across hair ``points (N, R, 3)`` m, level with the head."""
+    return unit_rows(np.cross(np.gradient(points, axis=1), hull.outward(points)))
 
 
 def volume(hull: Hull, points: Doubles) -> Doubles:
