@@ -29,7 +29,7 @@ _BESIDE, _CROSSED, _CROSSING = 0.0008, 5.5, 1.7
 exponent with which it comes to that."""
 _ZIGZAG = ((0.0013, 240.0, 0.0), (0.0007, 610.0, 1.3))
 """Waves of the parting, which is no line: metres to both sides, radians a metre, where each starts."""
-_FRAMING_DEG, _FRAMING_REACH_DEG, _FRAMING_WAY = 24.0, 20.0, (0.0, 0.36)
+_FRAMING_DEG, _FRAMING_REACH_DEG, _FRAMING_WAY = 17.0, 20.0, (0.0, 0.36)
 """How far the hair at the face comes forward over the cheeks, and to which turn behind it does; the parts of
 its fall between which it comes."""
 _BACK, _BACK_WAY = 0.36, (0.30, 0.70)
