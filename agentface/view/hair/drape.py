@@ -24,15 +24,15 @@ _SMOOTHINGS, _PULLS, _LAST_SMOOTHINGS = 8, 10, 30
 """Hair hangs taut over what stands out: smoothed, and pushed out of the head again, so many times."""
 _WHORL = 0.0025
 """Metres round the whorl where hair starts."""
-_BESIDE, _CROSSED, _CROSSING = 0.0008, 5.5, 1.7
+_BESIDE, _CROSSED, _CROSSING = 0.0008, 8.0, 0.9
 """Metres from the parting where hair starts, by how much of that less at its end, where it is combed over it, and the
 exponent with which it comes to that."""
 _ZIGZAG = ((0.0013, 240.0, 0.0), (0.0007, 610.0, 1.3))
 """Waves of the parting, which is no line: metres to both sides, radians a metre, where each starts."""
-_FRAMING_DEG, _FRAMING_REACH_DEG, _FRAMING_WAY = 17.0, 20.0, (0.0, 0.36)
+_FRAMING_DEG, _FRAMING_REACH_DEG, _FRAMING_WAY = 20.0, 20.0, (0.15, 0.50)
 """How far the hair at the face comes forward over the cheeks, and to which turn behind it does; the parts of
 its fall between which it comes."""
-_BACK, _BACK_WAY = 0.36, (0.30, 0.70)
+_BACK, _BACK_WAY = 0.30, (0.50, 0.80)
 """How much of that it goes back below the cheekbones, where it would hide the corners of the mouth; between which parts
 of its fall."""
 _BULGE, _INWARD = 0.006, 0.016
