@@ -33,6 +33,9 @@ _FIRST = 8
 """Steps for what is made once: the face's own answers to single weights."""
 _OWN_RIDGE = 1e-4
 """Of the mean square of an answer, how strongly weights of 0 hold when they are sought."""
+_SPARSE = 0.004
+"""Of the geometric mean of an answer's and of all answers' mean square, what each weight costs when they are sought:
+few weights are likelier than many that undo each other."""
 _OPEN, _CLOSE, _TONGUE = (ARKIT_SHAPES.index(name) for name in ("jawOpen", "mouthClose", "tongueOut"))
 _SKIN_OPEN, _SKIN_CLOSE = (SKIN_SHAPES.index(name) for name in ("jawOpen", "mouthClose"))
 _TONGUE_OUT = indices_of("tongue_out")[0]
@@ -94,7 +97,9 @@ class ShapeSolver:
         self.answers: Doubles = model.derived(f"arkit.answers.{rules_stamp()}", lambda _: self._answers())
         """``(S, K)``: what the face shows for each of the skin's shapes alone; mouthClose less jawOpen."""
         square = self.answers @ self.answers.T
-        self._square = square + _OWN_RIDGE * np.trace(square) / len(square) * np.eye(len(square))
+        mean = np.trace(square) / len(square)
+        self._square = square + _OWN_RIDGE * mean * np.eye(len(square))
+        self._cost = _SPARSE * np.sqrt(mean * np.diag(square))
 
     def solve(
         self,
@@ -192,7 +197,7 @@ class ShapeSolver:
     def _nearest(self, features: Doubles) -> Doubles:
         """``(S,)``: the weights of ``SKIN_SHAPES`` the sum of whose answers is nearest to ``features (K,)``."""
         low, high, found = np.zeros(len(self._square)), np.ones(len(self._square)), np.zeros(len(self._square))
-        right = self.answers @ features
+        right = self.answers @ features - self._cost
         for closed in (1.0, None):  # mouthClose is of an opened jaw
             high[_SKIN_CLOSE] = found[_SKIN_OPEN] if closed is None else closed
             found = np.minimum(found, high)
