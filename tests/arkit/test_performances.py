@@ -36,8 +36,8 @@ def test_a_stream_comes_back():
     assert (performance.rate_hz, performance.name) == (60.0, "take")
     assert {"jaw_open", "zygomaticus_major_l", "gaze_pitch", "head_yaw", "head_roll"} <= set(performance.moved)
     again = weights_of_performance(performance, solver)
-    np.testing.assert_allclose(again.weights, stream.weights, atol=0.25)
-    assert np.abs(again.weights - stream.weights).mean() < 0.012
+    np.testing.assert_allclose(again.weights, stream.weights, atol=0.3)
+    assert np.abs(again.weights - stream.weights).mean() < 0.007
     np.testing.assert_allclose(again.angles[:, :3], stream.angles[:, :3], atol=1e-6)
     np.testing.assert_array_equal(again.times_s, stream.times_s)
 
