@@ -18,7 +18,7 @@ const float ROOT = 0.010;      // of the length, over which they begin
 const float BLUNT = 0.75;      // of its width, with which it does
 const float SHEET_ROOT = 0.2; // of that, for the sheets, through which one would see past the head
 const float EDGE = 3.0;        // hairs a lock's width, over which the sheet's front edge grows dense
-const float GAP = 0.34, GAPS = 0.8;  // how much darker it is between locks, and how soon along them it comes to that
+const float GAP = 0.24, GAPS = 0.8;  // how much darker it is between locks, and how soon along them it comes to that
 const float APART = 0.8;      // from here on locks narrow towards their tips
 
 float scattered(float number) {
@@ -57,6 +57,6 @@ void main() {
     if (cover < least_cover) discard;
     float strands = 0.35 * ends + 0.65 * here;
     float gap = 1.0 - min(GAPS * along, GAP) * smoothstep(0.2, 1.0, abs(lock));
-    float light = (0.70 + 0.60 * strands + 0.40 * drift.b) * gap;
+    float light = (0.76 + 0.48 * strands + 0.40 * drift.b) * gap;
     colour = vec4(mix(dull, bright, strands) * light, least_cover < 0.5 ? cover : 1.0);   // with one sample a pixel there is hair or none
 }

@@ -23,7 +23,7 @@ const vec2 SHINES = vec2(0.65, 1.85);  // how much of the highlights dull and br
 const vec2 DISORDER = vec2(0.0, 0.13);  // of the length: up to where roots rise at all angles, and from where they lie alike
 const float SCATTER = 0.45;   // what they send back of the highlights, as a part of what they scatter
 const vec3 COOL = vec3(0.97, 1.0, 1.04), WARM = vec3(1.04, 1.0, 0.95);   // their own hues
-const vec2 LOCKS = vec2(0.78, 1.25);   // how much locks send back, beside each other
+const vec2 LOCKS = vec2(0.88, 1.14);   // how much locks send back, beside each other
 const float INSIDE = 0.25;    // of the light that falls on it from outside, seen from inside
 const float TURNED = -0.35;   // cosine; at its outline hair is still seen from outside
 

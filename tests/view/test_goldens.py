@@ -17,7 +17,7 @@ from agentface.view.gl.quality import QUALITIES
 from tests.view.compare import FOLDER, Goldens, difference, reduced
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
-SIZE = (240, 270)
+SIZE = (236, 264)
 
 
 @pytest.fixture(scope="session")

@@ -25,7 +25,7 @@ _WISPS, _WISPS_UP_TO = 4, 0.22
 
 
 @dataclass(frozen=True, slots=True)
-class Course:
+class CardWays:
     """Where the cards of a side run on the hull.
 
     ``t (R,)`` 0..1 along each; ``root (N,)`` of each and ``place (N, R)`` 0 at the face to 1 at the nape, ``space
@@ -43,7 +43,7 @@ class Course:
     aside: Doubles
 
     @classmethod
-    def drawn(cls, paths: Doubles, locks: Locks, rng: np.random.Generator) -> Course:
+    def drawn(cls, paths: Doubles, locks: Locks, rng: np.random.Generator) -> CardWays:
         """On ``paths (C, K, 3)`` m, one in each of equal parts of them."""
         last, t = len(paths) - 1.0, parts_along(_ROWS)
         chance = (np.arange(CARDS) + rng.uniform(0.0, _JITTER, CARDS)) / CARDS
