@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 FILE = Path(__file__).with_name("slow.txt")
-ONE_S, ALL_S, READY_S = 0.3, 1.5, 2.0
+ONE_S, ALL_S, READY_S = 0.15, 0.5, 1.5
 """From how long on a function of tests is slow: one of its tests, all of them; and a module, in getting ready."""
 _HEAD = """\
 # Functions and whole modules of tests that `make quick` leaves out, as long as they took on one machine; written by
