@@ -29,8 +29,11 @@ class SlowTests:
         return cls(frozenset(line for line in lines if line and not line.startswith("#")))
 
     @classmethod
-    def measured(cls, reports: Iterable[tuple[str, str, float]]) -> SlowTests:
-        """By the node, the phase (``setup``, ``call``, ``teardown``) and the seconds of each report."""
+    def measured(cls, reports: Iterable[tuple[str, str, float]], noted: SlowTests) -> SlowTests:
+        """By the node, the phase (``setup``, ``call``, ``teardown``) and the seconds of each report.
+
+        What was ``noted`` of modules of which nothing is reported stays.
+        """
         longest, together, ready = defaultdict(float), defaultdict(float), defaultdict(float)
         for node, phase, seconds in reports:
             module, function = _module(node), _function(node)
@@ -41,7 +44,8 @@ class SlowTests:
                 ready[module] += seconds
         modules = {module for module, seconds in ready.items() if seconds >= READY_S}
         slow = {function for function in longest if longest[function] >= ONE_S or together[function] >= ALL_S}
-        return cls(frozenset(modules | {function for function in slow if _module(function) not in modules}))
+        others = {name for name in noted.names if _module(name) not in ready}
+        return cls(frozenset(modules | others | {function for function in slow if _module(function) not in modules}))
 
     def has(self, node: str) -> bool:
         """Whether the test is one of them."""

@@ -71,10 +71,27 @@ def test_the_readme_s_first_program_runs():
 
 
 def test_what_is_noted_as_slow_is_there():
-    missing = [
-        name
-        for name in SlowTests.noted().names
-        for path, function in [(name.partition("::")[0], name.rpartition("::")[2] if "::" in name else "")]
-        if f"def {function}" not in ((ROOT / path).read_text() if (ROOT / path).exists() else "")
+    def is_there(name: str) -> bool:
+        module, *within = name.split("::")
+        path = ROOT / module
+        return path.exists() and (not within or f"def {within[-1]}(" in path.read_text())
+
+    assert [name for name in SlowTests.noted().names if not is_there(name)] == []
+
+
+def test_what_takes_long_is_noted_and_what_did_not_run_stays():
+    noted = SlowTests(frozenset({"a.py::test_gone", "b.py", "c.py::test_long"}))
+    reports = [
+        ("a.py::test_short[1]", "call", 0.1),
+        ("a.py::test_many[1]", "call", 0.1),
+        *((f"a.py::test_many[{n}]", "call", 0.1) for n in range(2, 8)),
+        ("a.py::test_long[1]", "call", 2.0),
+        ("a.py::test_short[1]", "setup", 0.1),
+        ("d.py::test_ready", "setup", 2.0),
+        ("d.py::test_ready", "call", 2.0),
     ]
-    assert missing == []
+    slow = SlowTests.measured(reports, noted)
+    assert slow.names == {"a.py::test_many", "a.py::test_long", "b.py", "c.py::test_long", "d.py"}
+    assert slow.has("a.py::test_long[7]")
+    assert slow.has("d.py::test_other")
+    assert not slow.has("a.py::test_short[1]")

@@ -15,7 +15,7 @@ from agentface.view.hair.hull import Hull
 from agentface.view.hair.locks import Locks
 from agentface.view.hair.mantle import LOW, Mantle, least_height
 from agentface.view.hair.ribbons import unit_rows
-from agentface.view.hair.sheets import FIRST_CARD, SIGNS, WAVE, Sheet, sideways
+from agentface.view.hair.sheets import FIRST_CARD, SIGNS, WAVE, Sheet
 from agentface.view.hair.styles import thickness_of
 
 _ACROSS = np.array([-1.0, 0.0, 1.0])
@@ -72,7 +72,7 @@ def _lying(
     drift = _DRIFT * np.where(ways.wisps(), _WISP_DRIFT, 1.0) * rng.normal(size=CARDS).clip(-1.3, 1.3)
     off = look.curl * WAVE * locks.own(ways.root, along) + drift[:, None] * ways.t**1.5
     sway = look.curl * WAVE * locks.waves(ways.root, along)[0] + off
-    across = sideways(hull, middle)
+    across = hull.sideways(middle)
     points = middle + sway[..., None] * across
     rootward = _OVER_PARTING * rng.random((CARDS, 1)) * np.exp(-along / _OVER_PARTING_REACH)
     points = points - rootward[..., None] * unit_rows(np.gradient(middle, axis=1))
@@ -90,7 +90,7 @@ def _edges(
     half = 0.5 * _OVERLAP * spaces * rng.uniform(*_WIDTHS, (CARDS, 1))
     half = np.maximum(half, _NARROWEST) * (1.0 - _NARROWED * smoothstep(0.40, 1.0, t))
     half *= np.where(ways.wisps(), _WISP_WIDTH, 1.0)[:, None]
-    across = unit_rows(np.cross(np.gradient(points, axis=1), hull.outward(points)))
+    across = hull.sideways(points)
     across *= np.sign((across * ways.aside).sum(2, keepdims=True))
     across = unit_rows(smoothed(across, _EVEN))
     at_root = (1.0 - smoothstep(0.0, 0.25, t))[:, None]

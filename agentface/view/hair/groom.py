@@ -162,8 +162,7 @@ def followed(guides: Doubles, mine: np.typing.NDArray[np.intp], along: Doubles) 
 
 def waves(hull: Hull, points: Doubles, along: Doubles, lock: Doubles) -> Doubles:
     """``(N, P, 3)``: how wavy hair goes to and fro, in heights of the waves; neighbouring locks wave together."""
-    out = hull.outward(points)
-    across = unit_rows(np.cross(np.gradient(points, axis=1), out))
+    out, across = hull.outward(points), hull.sideways(points)
     phase = 60.0 * points[:, 0, 0] + 45.0 * points[:, 0, 2] + 0.5 * lock
     turn = 2 * np.pi * along / _WAVE + phase[:, None]
     grown = np.clip(along / _WAVE, 0, 1)[..., None]

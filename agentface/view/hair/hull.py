@@ -91,6 +91,10 @@ class Hull:
         away[..., 1] = np.maximum(away[..., 1], 0.0)
         return unit_rows(away)
 
+    def sideways(self, points: Doubles) -> Doubles:
+        """``(N, R, 3)``: across hair that runs along ``points (N, R, 3)`` m, level with the head."""
+        return unit_rows(np.cross(np.gradient(points, axis=1), self.outward(points)))
+
     def _polar(self, points: Doubles | Floats) -> tuple[Doubles, Doubles, Doubles]:
         x, y, z = np.moveaxis(np.asarray(points - self.centre, np.float64), -1, 0)
         flat = np.hypot(x, z)

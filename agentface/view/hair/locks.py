@@ -11,7 +11,7 @@ from agentface.mesh.smoothstep import smoothstep
 
 _SEED = 41, 42
 """Of the left side and of the right: cards and the sheets below them wave alike."""
-_LOCKS, _UNEQUAL = 13, (0.45, 1.6)
+LOCKS, _UNEQUAL = 13, (0.45, 1.6)
 """On each side; their widths as parts of the mean."""
 _KNOTS = 8
 """Places on each side between which waves change."""
@@ -49,12 +49,10 @@ class Locks:
     def of_side(cls, sign: float) -> Locks:
         """The same ones each time."""
         rng = np.random.default_rng(_SEED[int(sign < 0.0)])
-        widths = rng.uniform(*_UNEQUAL, _LOCKS)
+        widths = rng.uniform(*_UNEQUAL, LOCKS)
         bounds = np.concatenate([[0.0], np.cumsum(widths)]) / widths.sum()
         lag = np.cumsum(rng.uniform(*_STEP, _KNOTS))
-        return cls(
-            bounds, rng.random(_LOCKS), lag, rng.uniform(*_WAVE_LENGTH, _KNOTS), rng.uniform(*_WAVE_SIZE, _KNOTS)
-        )
+        return cls(bounds, rng.random(LOCKS), lag, rng.uniform(*_WAVE_LENGTH, _KNOTS), rng.uniform(*_WAVE_SIZE, _KNOTS))
 
     def number(self, place: Doubles) -> np.typing.NDArray[np.intp]:
         """``(N,)``: the lock that ``place (N,)`` is in."""

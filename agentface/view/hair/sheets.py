@@ -13,7 +13,7 @@ from agentface.mesh.smoothstep import smoothstep
 from agentface.view.gl.drawn_mesh import DrawnMesh
 from agentface.view.hair.drape import draped
 from agentface.view.hair.hull import Hull
-from agentface.view.hair.locks import Locks
+from agentface.view.hair.locks import LOCKS, Locks
 from agentface.view.hair.ribbons import unit_rows
 from agentface.view.hair.styles import thickness_of
 
@@ -38,8 +38,8 @@ _ROOTWARD = 0.32
 """How much denser than half way the points along hair are at its root, where it lies round the head."""
 SIGNS = 1.0, -1.0
 """Of x, of the sides of the head."""
-LOCKS, FIRST_CARD, PAINTED = 13, 14, 26
-"""Of a sheet; the number of the first card; up to which number ``shaders/sheet_flat.vert.glsl`` paints."""
+FIRST_CARD, PAINTED = LOCKS + 1, 26
+"""The number of the first card, after the locks of a sheet; up to which ``shaders/sheet_flat.vert.glsl`` paints."""
 _WIDTHS = 0.3, 1.7
 """Of the spaces between columns, in locks, as parts of their mean."""
 _UNEVEN = 0.03
@@ -128,7 +128,7 @@ def _sheet(
     points = (
         points
         + height[..., None] * hull.outward(points)
-        + (look.curl * WAVE * aside)[..., None] * sideways(hull, points)
+        + (look.curl * WAVE * aside)[..., None] * hull.sideways(points)
     )
     points = hull.push_out(points, 0.001 + _LOWEST * smoothstep(0.0, 0.03, along))
     light = _LIGHT + (_LIGHT_AT_ROOT - _LIGHT) * near_root
@@ -151,11 +151,6 @@ def risen(place: Doubles, along: Doubles) -> Doubles:
     """
     start = (_AT_PARTING + (_AT_CROWN - _AT_PARTING) * smoothstep(*_TO_CROWN, place))[:, None]
     return np.asarray(start + (1.0 - start) * np.sin(0.5 * np.pi * np.clip(along / _RISE, 0.0, 1.0)))
-
-
-def sideways(hull: Hull, points: Doubles) -> Doubles:
-    """``(N, R, 3)``: across hair ``points (N, R, 3)`` m, level with the head."""
-    return unit_rows(np.cross(np.gradient(points, axis=1), hull.outward(points)))
 
 
 def volume(hull: Hull, points: Doubles) -> Doubles:

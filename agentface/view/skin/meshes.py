@@ -95,8 +95,8 @@ class SkinMeshes:
 
 
 def _soft_normals(model: HeadModel) -> Floats:
-    sharp, soft = (blurred(model.normals, model.triangles, times) for times in (_BLUR_EARS, _BLUR))
-    return sharp_ears(model, sharp, soft)
+    sharp = blurred(model.normals, model.triangles, _BLUR_EARS)
+    return sharp_ears(model, sharp, blurred(sharp, model.triangles, _BLUR - _BLUR_EARS))
 
 
 def _drawn(mesh: Refined, fields: dict[str, Floats]) -> DrawnMesh:
